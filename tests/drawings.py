@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Random networks of LD and FBD, and instruction lists, written as PLCopen XML and as Structured Text by rules of their own: both runs write
-the same bytes.
+"""Random networks of LD and FBD, and instruction lists, written as PLCopen XML and as Structured Text by rules of their own, and networks as
+TwinCAT keeps them: both runs write the same bytes.
 
 usage: drawings.py LINESHAFT [NETWORKS [SEED]]
 """
@@ -359,6 +359,243 @@ def instructions(draw, name):
     return net
 
 
+# ---- networks of TwinCAT: trees, in files of their own
+
+NEGATED, SET, RESET, JUMP, RISING, FALLING = 1, 2, 3, 4, 16, 32  # Flags
+FLAGS = "Flags"
+
+
+def value(name, text):
+    return f'<v n="{name}">{text}</v>'
+
+
+def operand(text, marks=0, name="", kind="Operand", of=""):
+    named = f' n="{name}"' if name else ""
+    return (f'<o{named} t="{kind}">' + (value("Operand", f'"{text}"') if text else '<n n="Operand" />') + value("Type", f'"{of}"')
+            + f'<o n="Flags" t="Flags">{value("Flags", marks)}</o></o>')
+
+
+def strings(name, texts):
+    return f'<l2 n="{name}" cet="String">' + "".join(f"<v>{each}</v>" for each in texts) + "</l2>"
+
+
+def box(kind, call, inputs, names, outs, takers, instance="", marks=(), has_en=False, has_eno=False):
+    """`inputs` are trees; `outs` names and types; `takers` operands, `<n />` where the tree goes on."""
+    flags = (f'<l2 n="InputFlags" cet="Flags">{"".join(f"<o>{value(FLAGS, m)}</o>" for m in marks)}</l2>' if any(marks)
+             else '<n n="InputFlags" />')
+    return (f'<o t="BoxTreeBox">{value("BoxType", chr(34) + kind + chr(34))}{operand(instance, name="Instance")}'
+            f'<o n="OutputItems" t="OutputItemList"><l2 n="OutputItems">{"".join(takers)}</l2></o>'
+            f'<o n="Flags" t="Flags">{value("Flags", 0)}</o>{flags}<l2 n="InputItems">{"".join(inputs)}</l2>'
+            f'<o n="InputParam" t="ParamList">{strings("Names", names)}{strings("Types", ["BOOL" for _ in names])}</o>'
+            f'<o n="OutputParam" t="ParamList">{strings("Names", [n for n, _ in outs])}{strings("Types", [k for _, k in outs])}</o>'
+            f'<v n="CallType" t="Operator">{call}</v>{value("EN", str(has_en).lower())}{value("ENO", str(has_eno).lower())}'
+            f'<n n="STSnippet" />{value("ProvidesSTSnippet", "false")}</o>')
+
+
+def inside(tree, name):
+    """A tree as a member of another."""
+    return tree.replace("<o ", f'<o n="{name}" ', 1) if tree else f'<n n="{name}" />'
+
+
+class Trees(Network):
+    """A PROGRAM whose networks are trees."""
+
+    def __init__(self, draw, name):
+        super().__init__(draw, name)
+        self.networks, self.wires = [], []
+
+    def leaf(self, text, marks=0, of="BOOL"):
+        return f'<o t="BoxTreeOperand">{inside(operand(text, marks, of=of), "Operand")}</o>'
+
+    def edge(self, text, marks):
+        if marks & (RISING | FALLING):
+            trigger = self.own("R_TRIG" if marks & RISING else "F_TRIG")
+            self.statements.append(f"{trigger}(CLK := {text});")
+            text = f"{trigger}.Q"
+        return f"(NOT {text})" if marks & NEGATED else text
+
+    def contact(self, may_have_edge=True):
+        name = self.draw.choice(BOOLS + ["b0", "b1", "b2"])
+        marks = self.draw.choice([0, 0, 0, NEGATED] + ([RISING, FALLING] if may_have_edge else []))
+        return self.leaf(name, marks), self.edge(name, marks)
+
+    def kept(self, text):
+        name = self.own("BOOL")
+        self.statements.append(f"{name} := {text};")
+        return name
+
+    def boolean(self, depth):
+        """A tree of a BOOL, and its text."""
+        kind = self.draw.random()
+        if self.wires and kind < 0.15:
+            number, text = self.draw.choice(self.wires)
+            return f'<o t="BoxTreeDemux">{value("VarId", number)}<n n="Input" /></o>', text
+        if kind < 0.18:
+            return '<o t="BoxTreeTerminator"><n n="Input" /></o>', "TRUE"
+        if depth == 0 or kind < 0.4:
+            return self.contact()
+        if kind < 0.6:
+            return self.operator(depth)
+        if kind < 0.7:
+            return self.compare(depth)
+        if kind < 0.8:
+            return self.parallel()
+        if kind < 0.9:
+            return self.sum(depth, True)
+        return self.block(depth, True)
+
+    def operator(self, depth):
+        name = self.draw.choice(["AND", "OR", "XOR", "NOT"])
+        parts, marks, texts = [], [], []
+        for _ in range(1 if name == "NOT" else self.draw.randint(2, 3)):
+            tree, text = self.boolean(depth - 1)
+            mark = self.draw.choice([0, 0, 0, NEGATED, RISING])
+            parts.append(tree)
+            marks.append(mark)
+            texts.append(self.edge(text, mark))
+        text = f"(NOT {texts[0]})" if name == "NOT" else f"({f' {name} '.join(texts)})"
+        return box(name, name.capitalize(), parts, [], [("", "BOOL")], ["<n />"], marks=marks), text
+
+    def compare(self, depth):
+        name, a, b = self.draw.choice(list(SIGNS)), self.draw.choice(NUMBERS), self.draw.choice(NUMBERS + ["3"])
+        has_en = self.draw.random() < 0.5
+        parts, text = [], f"({a} {SIGNS[name]} {b})"
+        if has_en:
+            tree, enabled = self.boolean(depth - 1)
+            parts, text = [tree], f"({enabled} AND {text})"
+        return box(name, name.capitalize(), parts + [self.leaf(a, of="INT"), self.leaf(b, of="INT")], ["EN"] if has_en else [],
+                   [("", "BOOL")], ["<n />"], has_en=has_en), text
+
+    def parallel(self):
+        branches = [self.contact(False) for _ in range(self.draw.randint(2, 3))]
+        text = f"({' OR '.join(text for _, text in branches)})"
+        before = ""
+        if self.draw.random() < 0.5:
+            before, text_before = self.contact()
+            text = f"({text_before} AND {text})"
+        trees = "".join(tree for tree, _ in branches)
+        return f'<o t="BoxTreeParallel">{inside(before, "Input")}<l2 n="Trees">{trees}</l2>{value("Mode", "Sequential")}</o>', text
+
+    def sum(self, depth, is_taken):
+        """What is behind it takes ENO."""
+        name, sign = self.draw.choice([("ADD", "+"), ("SUB", "-")])
+        a, b = self.draw.choice(NUMBERS), self.draw.choice(NUMBERS + ["v0", "v1", "2"])
+        target = self.draw.choice(["v0", "v1", "v2"])
+        has_en = is_taken or self.draw.random() < 0.5
+        parts, enabled = [], "TRUE"
+        if has_en:
+            tree, text = self.boolean(depth - 1)
+            parts, enabled = [tree], self.kept(text)
+        self.statements.append(f"IF {enabled} THEN {target} := {a} {sign} {b}; END_IF")
+        takers = ["<n />"] * has_en + [operand(target, of="INT")]
+        return box(name, name.capitalize(), parts + [self.leaf(a, of="INT"), self.leaf(b, of="INT")], ["EN"] * has_en,
+                   [("ENO", "BOOL")] * has_en + [("", "INT")], takers, has_en=has_en, has_eno=has_en), enabled
+
+    def block(self, depth, is_taken):
+        name = self.draw.choice(["TON", "TP", "CTU"])
+        instance = self.instance(name)
+        has_en = self.draw.random() < 0.4
+        parts, names, enabled = [], [], "TRUE"
+        if has_en:
+            tree, text = self.boolean(depth - 1)
+            parts, names, enabled = [tree], ["EN"], self.kept(text)
+        tree, text = self.boolean(depth - 1)
+        given = [(BLOCKS[name][0][0][0], tree, text)]
+        if name == "CTU":
+            tree, text = self.boolean(depth - 1)
+            given += [("RESET", tree, text), ("PV", self.leaf("3", of="INT"), "3")]
+        else:
+            given += [("PT", self.leaf("T#30ms", of="TIME"), "T#30ms")]
+        self.statements.append(f"IF {enabled} THEN {instance}({', '.join(f'{n} := {text}' for n, _, text in given)}); END_IF")
+        takers, outs, taken = ["<n />"], [("Q", "BOOL")], f"{instance}.Q"
+        if name == "CTU" and not is_taken:
+            target = self.draw.choice(["v0", "v1", "v2"])
+            takers.append(operand(target, of="INT"))
+            outs.append(("CV", "INT"))
+            self.statements.append(f"IF {enabled} THEN {target} := {instance}.CV; END_IF")
+        if has_en:
+            takers, outs = [operand("e") if is_taken else "<n />"] + takers, [("ENO", "BOOL")] + outs
+            if is_taken:
+                self.statements.append(f"e := {enabled};")
+        return box(name, "FunctionBlock", parts + [tree for _, tree, _ in given], names + [n for n, _, _ in given], outs, takers, instance,
+                   has_en=has_en, has_eno=has_en), taken
+
+    def assign(self, tree, targets):
+        return (f'<o t="BoxTreeAssign"><o n="OutputItems" t="OutputItemList"><l2 n="OutputItems" cet="Operand">{"".join(targets)}</l2></o>'
+                f'<o n="Flags" t="Flags">{value("Flags", 0)}</o>{inside(tree, "RValue")}</o>')
+
+    def coils(self):
+        tree, text = self.boolean(self.draw.randint(0, 3))
+        text = self.kept(text)
+        targets = []
+        for _ in range(self.draw.choice([1, 1, 1, 2, 3])):
+            name, marks = self.draw.choice(["b0", "b1", "b2"]), self.draw.choice([0, 0, NEGATED, SET, RESET, RISING, FALLING])
+            targets.append(operand(name, marks, of="BOOL"))
+            if marks in (SET, RESET):
+                self.statements.append(f"IF {text} THEN {name} := {'TRUE' if marks == SET else 'FALSE'}; END_IF")
+            else:
+                self.statements.append(f"{name} := {self.edge(text, marks)};")
+        return self.assign(tree, targets)
+
+    def wire(self):
+        tree, text = self.boolean(2)
+        number = len(self.wires) + 1
+        self.wires.append((number, self.kept(text)))
+        return f'<o t="BoxTreeDemux">{value("VarId", number)}{inside(tree, "Input")}</o>'
+
+    def network(self, number, jumps):
+        """Its label is that of its number; at its end it may jump to one behind it."""
+        self.wires = []
+        trees = [self.draw.choice([self.coils, self.coils, self.wire, lambda: self.sum(2, False)[0], lambda: self.block(2, False)[0]])()
+                 for _ in range(self.draw.randint(1, 3))]
+        if self.draw.random() < 0.25:
+            tree, text = self.boolean(1)
+            name = self.own("BOOL")
+            self.statements.append(f"{name} := {text};")
+            jumps.append((name, number + self.draw.randint(1, 3)))
+            trees.append(self.assign(tree, [operand(f"n{jumps[-1][1]}", JUMP)]))
+        self.networks.append(f'<o>{value("ILActive", "false")}{value("Label", f"{chr(34)}n{number}{chr(34)}")}{value("OutCommented", "false")}'
+                             f'<l2 n="NetworkItems">{"".join(trees)}</l2></o>')
+
+    def xml(self, language):
+        own = "".join(f"{n} : {k}; " for n, k in self.declared)
+        return (f'<?xml version="1.0" encoding="utf-8"?>\n<TcPlcObject Version="1.1.0.1"><POU Name="{self.name}"><Declaration><![CDATA[PROGRAM {self.name}\n'
+                f'VAR {own}END_VAR\n]]></Declaration><Implementation><NWL><XmlArchive><Data><o t="NWLImplementationObject">'
+                f'<l2 n="NetworkList" cet="Network">' + "\n".join(self.networks)
+                + "</l2></o></Data></XmlArchive></NWL></Implementation></POU></TcPlcObject>\n")
+
+
+def trees(draw, name):
+    net = Trees(draw, name)
+    net.declare("e", "BOOL")
+    count, jumps, whole = draw.randint(1, 5), [], []
+    for number in range(count + 3):  # the last three do nothing but be jumped to
+        net.statements = []
+        leading = [name for name, to in jumps if to > number]
+        if number < count:
+            net.network(number, jumps)
+        else:
+            net.networks.append(f'<o>{value("Label", f"{chr(34)}n{number}{chr(34)}")}{value("OutCommented", "false")}<l2 n="NetworkItems" /></o>')
+        body = " ".join(net.statements)
+        whole.append(f"IF NOT ({' OR '.join(leading)}) THEN {body} END_IF" if leading and body else body)
+    net.statements = [f"{name} := FALSE;" for name, _ in jumps] + whole
+    return net
+
+
+def write_project(folder, nets):
+    for net in nets:
+        (folder / f"{net.name}.TcPOU").write_text(net.xml("NWL"))
+    (folder / "drawn.plcproj").write_text('<Project xmlns="http://schemas.microsoft.com/developer/msbuild/2003"><ItemGroup>'
+                                          + "".join(f'<Compile Include="{net.name}.TcPOU"/>' for net in nets) + "</ItemGroup></Project>\n")
+    return "drawn.plcproj"
+
+
+def write_export(folder, language, nets, name="drawn.xml"):
+    (folder / name).write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
+                               + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
+    return name
+
+
 def run(folder, name, sources, nets):
     signals = [f"{net.name}.{v}" for net in nets for v in ("b0", "b1", "b2", "v0", "v1", "v2")]
     blocks = "".join(f"  {net.name}: {{type: {net.name}, task: main}}\n" for net in nets)
@@ -380,20 +617,18 @@ with tempfile.TemporaryDirectory() as temporary:
     (folder / "driver.st").write_text(DRIVER)
     while done < networks:
         draw = random.Random(f"{seed} {done}")
-        language, make = (("LD", ladder), ("FBD", diagram), ("IL", instructions))[done // batch % 3]
+        language, make = (("LD", ladder), ("FBD", diagram), ("IL", instructions), ("NWL", trees))[done // batch % 4]
         nets = [make(draw, f"Net{i}") for i in range(batch)]
-        (folder / "drawn.xml").write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
-                                          + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
+        drawn_as = write_project(folder, nets) if language == "NWL" else write_export(folder, language, nets)
         (folder / "said.st").write_text("".join(net.text() for net in nets))
-        a, b = run(folder, "drawn", "drawn.xml", nets), run(folder, "said", "said.st", nets)
+        a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", "said.st", nets)
         if a != b:
             first = next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
             columns = [j for j, (x, y) in enumerate(zip(a[first].split(b","), b[first].split(b","))) if x != y]
             net = nets[(columns[0] - 1) // 6]
             print(net.xml(language), net.text(), sep="\n")
-            (folder / "one.xml").write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n' + net.xml(language)
-                                            + "</pous></types></project>\n")
-            subprocess.run([lineshaft, "show", "one.xml"], cwd=folder)
+            one = f"{net.name}.TcPOU" if language == "NWL" else write_export(folder, language, [net], "one.xml")
+            subprocess.run([lineshaft, "show", one], cwd=folder)
             sys.exit(f"seed {seed}, networks from {done} on: line {first} differs in columns {columns}: {net.name}")
         changing = len(set(a[1:]))
         assert changing > 10, f"the trace shows only {changing} different lines"

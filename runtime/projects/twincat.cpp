@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "runtime/projects/drawings/box_trees.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
@@ -48,8 +50,10 @@ class ObjectText {
             return;
         }
         add_lines(declaration);
-        for (const pugi::xml_node part : unit.children()) add_member(part);
-        add_body(unit, unit);
+        add_with_variables(unit, kind != Word::function_, [&] {
+            for (const pugi::xml_node part : unit.children()) add_member(part);
+            add_body(unit, unit);
+        });
         add_end(fmt::format("END_{}", st::shown(kind)), unit);
     }
 
@@ -84,7 +88,9 @@ class ObjectText {
         text_.write("ACTION ", file_.mark_of_tag(part));
         file_.copy(text_, part.attribute("Name"));
         text_.write(":\n", file_.mark_of_tag(part));
-        add_routine(part, part, "END_ACTION");
+        add_lines(part.child("Declaration"));
+        add_body(part, part);
+        add_end("END_ACTION", part);
     }
 
     /// A condition, as a method that says whether it holds.
@@ -105,8 +111,26 @@ class ObjectText {
 
     void add_routine(pugi::xml_node routine, pugi::xml_node named, std::string_view end) {
         add_lines(routine.child("Declaration"));
-        add_body(routine, named);
+        add_with_variables(routine, false, [&] { add_body(routine, named); });
         add_end(end, routine);
+    }
+
+    /// What `add` writes, behind the variables that its drawn bodies have of their own. `is_kept`:
+    /// they keep their values from scan to scan.
+    template <class Add>
+    void add_with_variables(pugi::xml_node owner, bool is_kept, Add add) {
+        MadeVariables variables;
+        const auto outer = std::exchange(variables_, &variables);
+        const bool was_kept = std::exchange(is_kept_, is_kept);
+        const Excerpts before = std::exchange(text_, {});
+        add();
+        const Excerpts rest = std::exchange(text_, before);
+        if (!variables.declarations().empty())
+            text_.write(fmt::format("VAR\n{}END_VAR\n", variables.declarations()),
+                        file_.mark_of_tag(owner));
+        text_.append(rest);
+        variables_ = outer;
+        is_kept_ = was_kept;
     }
 
     void add_property(pugi::xml_node property) {
@@ -127,20 +151,25 @@ class ObjectText {
         const pugi::xml_node implementation = routine.child("Implementation");
         for (const pugi::xml_node body : implementation.children()) {
             if (body.type() != pugi::node_element) continue;
-            if (std::string_view(body.name()) == "ST") {
+            const std::string_view kind = body.name();
+            if (kind == "ST")
                 add_lines(body);
-                continue;
-            }
-            out_.add(code::not_supported, file_.mark_of_tag(body),
-                     fmt::format("the body of '{}' is drawn ({}), and only Structured Text is read",
-                                 name(named), body.name()),
-                     "convert it to Structured Text in TwinCAT, or leave it out");
+            else if (kind == "NWL")
+                text_.append(text_of_box_trees(file_, out_, *variables_, is_kept_, body));
+            else
+                out_.add(code::not_supported, file_.mark_of_tag(body),
+                         fmt::format("the body of '{}' is drawn ({}), and only Structured Text, "
+                                     "LD and FBD are read",
+                                     name(named), kind),
+                         "convert it to Structured Text in TwinCAT, or leave it out");
         }
     }
 
     const XmlFile& file_;
     Diagnostics& out_;
     Excerpts text_;
+    MadeVariables* variables_ = nullptr;  ///< of drawn bodies, where they are declared
+    bool is_kept_ = true;                 ///< from scan to scan
 };
 
 std::int64_t number_of(const XmlFile& file, pugi::xml_node element) {

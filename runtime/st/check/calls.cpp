@@ -31,6 +31,16 @@ bool is_own_input(const Expression& e) {
            (!e.type->is_scalar() || e.type->is_handle());
 }
 
+/// CODESYS lends what a program has.
+bool is_of_program(const Expression& e) {
+    const Expression* root = &e;
+    while (root->kind == E::index || root->kind == E::bit) root = root->operands[0];
+    if (root->kind != E::member || !root->operands[0]->type) return false;
+    const Type& of = *root->operands[0]->type;
+    return e.place.dialect().is_loose && of.kind == Kind::block && of.routine &&
+           of.routine->pou->kind == PouKind::program;
+}
+
 /// A variable may bear a function's name, but no instance can be meant then.
 bool is_instance(Checking& c, const Token& name) {
     const Variable* variable = find_variable(c, name);
@@ -113,8 +123,8 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         if (coerce(c, value, *type)) return;
     }
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;
-    const bool is_read =
-        is_constant || (parameter.section == Section::in_out && is_own_input(*value));
+    const bool is_read = is_constant || (parameter.section == Section::in_out &&
+                                         (is_own_input(*value) || is_of_program(*value)));
     const bool is_place = is_variable(*value) || (argument.is_output && value->kind == E::bit);
     if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {

@@ -348,13 +348,29 @@ class Lexer {
         return !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
     }
 
-    void read_text() {
-        ++at_;
+    /// To its closing quote, to the end of its line where there is none. CODESYS lets a text go on
+    /// in the next lines; one that only lacks its quote has a ';' before the next one.
+    void pass_text() {
         const auto is_pair = [&] {
             return peek() == '$' ? peek(1) != '\n' && peek(1) != '\0' : at("''");
         };
-        while (at_ < text_.size() && text_[at_] != '\n' && (text_[at_] != '\'' || is_pair()))
-            at_ += is_pair() ? 2 : 1;
+        const auto pass_until = [&](std::string_view ends) {
+            while (at_ < text_.size() && (ends.find(text_[at_]) == ends.npos || is_pair()))
+                at_ += is_pair() ? 2 : 1;
+        };
+        pass_until("'\n");
+        const std::size_t end_of_line = at_;
+        if (peek() == '\n') pass_until("';");
+        const std::size_t behind = text_.find_first_not_of(" \t", at_ + 1);
+        const bool is_whole =
+            peek() == '\'' && behind != text_.npos &&
+            std::string_view(";,)]\r\n").find(text_[behind]) != std::string_view::npos;
+        if (at_ != end_of_line && !is_whole) at_ = end_of_line;
+    }
+
+    void read_text() {
+        ++at_;
+        pass_text();
         const bool ends = peek() == '\'';
         const bool escapes = text_.substr(start_, at_ - start_).find("$'") != text_.npos;
         if (!ends)

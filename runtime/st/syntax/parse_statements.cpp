@@ -78,6 +78,20 @@ void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     p.take();
 }
 
+/// SCL has `x * = 2;` for `x *= 2;`.
+void join_assignment(Parsing& p) {
+    static constexpr std::pair<Word, Word> all[] = {{Word::plus, Word::plus_assign},
+                                                    {Word::minus, Word::minus_assign},
+                                                    {Word::times, Word::times_assign},
+                                                    {Word::divided, Word::divided_assign}};
+    for (const auto& [sign, joined] : all)
+        if (p.is(sign) && p.next().word == Word::equal) {
+            p.take();
+            p.tokens[p.at].word = joined;
+            return;
+        }
+}
+
 /// Simple_Stmt : Assign_Stmt | Latch_Stmt | Access_Stmt | Invocation
 /// Invocation : Variable_Access ';'
 /// It begins with a Name; an Invocation ends with the ')' of a call, or names an action.
@@ -87,6 +101,7 @@ void parse_simple(Parsing& p, Block& to) {
     if (p.is_in_test && p.at_test_statement()) return parse_test_statement(p, to);
     Expression* target = parse_access(p);
     if (p.panic) return;
+    join_assignment(p);
     const Word op = p.here().word;
     if (is_assignment(op)) return parse_assignment(p, target, to);
     if (op == Word::set_assign || op == Word::reset_assign) return parse_latch(p, target, to);

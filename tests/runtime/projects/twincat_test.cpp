@@ -185,7 +185,7 @@ TEST_CASE("a drawn body is told by the POU's name") {
     text.replace(text.find("</ST>"), 5, "</CFC>");
     const std::string path = write(folder, "Ramp.TcPOU", text);
     CHECK(found(path).starts_with(path + ":9:7: error[L0903]: the body of 'Ramp' is drawn (CFC), "
-                                         "and only Structured Text is read\n"));
+                                         "and only Structured Text, LD and FBD are read\n"));
 }
 
 TEST_CASE("a transition is a method that says whether it holds") {

@@ -1,0 +1,544 @@
+#include "runtime/projects/drawings/box_trees.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/drawings/archive.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+constexpr int deepest_tree = 400;
+constexpr std::size_t longest_text = 1U << 16;
+
+/// An operator that stands between its operands; empty: a function.
+std::string_view infix_of(std::string_view box) {
+    static constexpr std::pair<std::string_view, std::string_view> all[] = {
+        {"xor", " XOR "}, {"add", " + "},   {"sub", " - "}, {"mul", " * "},
+        {"div", " / "},   {"mod", " MOD "}, {"gt", " > "},  {"ge", " >= "},
+        {"lt", " < "},    {"le", " <= "},   {"eq", " = "},  {"ne", " <> "}};
+    for (const auto& [name, sign] : all)
+        if (st::same_name(name, box)) return sign;
+    return {};
+}
+
+bool compares(std::string_view box) {
+    static constexpr std::string_view all[] = {"gt", "ge", "lt", "le", "eq", "ne"};
+    return std::ranges::any_of(all, [&](auto name) { return st::same_name(name, box); });
+}
+
+/// `INT`, `Lib.Type`: as the type of a variable.
+bool is_type_name(std::string_view type) {
+    return !type.empty() && shape_of(type) == Value::Form::atom && !is_digit(type.front());
+}
+
+class BoxTrees {
+  public:
+    BoxTrees(const XmlFile& file, Diagnostics& out, MadeVariables& variables, bool is_kept,
+             pugi::xml_node body)
+        : archive_(file),
+          file_(file),
+          out_(out),
+          variables_(variables),
+          is_kept_(is_kept),
+          networks_(Archive::items(Archive::member(Archive::root(body), "NetworkList"))),
+          jumps_(variables, labels()) {}
+
+    Excerpts statements() {
+        for (const pugi::xml_node network : networks_) {
+            ++network_;
+            if (!archive_.is_true(network, "OutCommented")) add_network(network);
+        }
+        return jumps_.finish(std::exchange(now_, {}));
+    }
+
+  private:
+    /// A box with what leads to it.
+    struct Box {
+        pugi::xml_node node;
+        std::string type, instance;
+        std::vector<Value> inputs = {};
+        std::vector<std::string> names;      ///< of inputs
+        std::vector<pugi::xml_node> takers;  ///< operands at the outputs; null: none
+        std::vector<std::string> outputs, output_types;
+        bool has_enable = false, has_eno = false;
+        Value enabled = {};  ///< empty: always
+        Mark place = {};
+
+        std::size_t result() const { return has_eno ? 1 : 0; }
+        /// The output that what is behind the box takes.
+        std::size_t main() const {
+            const auto it = std::ranges::find_if(takers, Archive::is_null);
+            return it == takers.end() ? 0 : static_cast<std::size_t>(it - takers.begin());
+        }
+        std::string output_type(std::size_t i) const {
+            return i < output_types.size() && is_type_name(output_types[i]) ? output_types[i] : "";
+        }
+    };
+
+    /// A label may also be a heading; one that is jumped to is one.
+    std::vector<std::string> labels() const {
+        std::vector<std::string> all;
+        for (const pugi::xml_node network : networks_)
+            if (!archive_.is_true(network, "OutCommented") &&
+                !archive_.text(network, "Label").empty())
+                all.push_back(archive_.text(network, "Label"));
+        return all;
+    }
+
+    Mark place_of(pugi::xml_node object, std::string_view what) const {
+        Mark place = file_.mark_of_tag(object ? object : networks_[network_ - 1]);
+        place.drawn =
+            std::make_shared<const std::string>(fmt::format("network {}, {}", network_, what));
+        return place;
+    }
+
+    void refuse(const Mark& place, std::string why, std::string help) {
+        out_.add(code::not_supported, place, std::move(why), std::move(help));
+    }
+
+    Value words(std::string_view text, const Mark& place, std::string type = {}) const {
+        Value made{.text = {}, .form = shape_of(text), .type = std::move(type)};
+        made.text.write(text, place);
+        return made;
+    }
+
+    Value always(const Mark& place) const {
+        Value made = words("TRUE", place, "BOOL");
+        made.is_always = true;
+        return made;
+    }
+
+    void write_if(const Value& condition, const Mark& place) {
+        if (condition.is_empty() || condition.is_always) return;
+        now_.write("IF ", place);
+        now_.append(condition.text);
+        now_.write(" THEN\n", place);
+    }
+    void write_end_if(const Value& condition, const Mark& place) {
+        const bool is_open = !condition.is_empty() && !condition.is_always;
+        now_.write(is_open ? "END_IF\n" : "", place);
+    }
+
+    Value kept_in(const std::string& variable, const Value& value, const Mark& place) {
+        now_.write(variable + " := ", place);
+        now_.append(value.text);
+        now_.write(";\n", place);
+        return words(variable, place, value.type);
+    }
+    /// Into a variable, so that it may be taken again; as it is, where its type is not known.
+    Value fixed(const Value& value, const Mark& place) {
+        const std::string_view text = value.text.text();
+        const bool is_made = value.form == Value::Form::atom &&
+                             (text.starts_with("_wire") || text.starts_with("_edge"));
+        if (value.is_always || is_made || !is_type_name(value.type)) return value;
+        return kept_in(variables_.make("_wire", value.type), value, place);
+    }
+
+    void add_network(pugi::xml_node network) {
+        if (archive_.is_true(network, "ILActive"))
+            return refuse(place_of(network, "a list"),
+                          "an instruction list of TwinCAT is not supported",
+                          "show the network as FBD or LD, and save it");
+        wires_.clear();
+        if (const std::string label = archive_.text(network, "Label"); !label.empty())
+            jumps_.label(label, std::exchange(now_, {}), place_of(network, "its label"));
+        for (const pugi::xml_node item : Archive::items(Archive::member(network, "NetworkItems")))
+            evaluate(item);
+    }
+
+    /// A tree that nothing is behind.
+    void evaluate(pugi::xml_node tree) {
+        if (Archive::is_null(tree)) return;
+        const std::string_view kind = Archive::kind_of(tree);
+        if (kind == "BoxTreeBox")
+            value_of_box(tree, false);
+        else if (kind == "BoxTreeTerminator")
+            evaluate(Archive::member(tree, "Input"));
+        else
+            value_of(tree);
+    }
+
+    Value value_of(pugi::xml_node tree) {
+        if (Archive::is_null(tree)) return {};
+        const Mark place = place_of(tree, "a line");
+        if (depth_ >= deepest_tree) {
+            out_.add(code::too_deep_or_large, place,
+                     fmt::format("more than {} elements stand one behind the other", deepest_tree),
+                     "put a variable between");
+            return words("FALSE", place, "BOOL");
+        }
+        ++depth_;
+        Value value = value_of_kind(tree, place);
+        --depth_;
+        if (value.text.text().size() <= longest_text) return value;
+        out_.add(code::too_deep_or_large, place,
+                 fmt::format("what this takes is longer than {} characters as an expression",
+                             longest_text),
+                 "put a variable between");
+        return words("FALSE", place, "BOOL");
+    }
+
+    Value value_of_kind(pugi::xml_node tree, const Mark& place) {
+        const std::string_view kind = Archive::kind_of(tree);
+        if (kind == "BoxTreeOperand") {
+            const pugi::xml_node operand = Archive::member(tree, "Operand");
+            const Value value = written(operand);
+            return marked(value, archive_.marks_of(operand),
+                          place_of(operand, archive_.text(operand, "Operand")));
+        }
+        if (kind == "BoxTreeBox") return value_of_box(tree, true);
+        if (kind == "BoxTreeAssign") return assign(tree);
+        if (kind == "BoxTreeDemux") return value_of_wire(tree, place);
+        if (kind == "BoxTreeParallel") return value_of_parallel(tree, place);
+        if (kind == "BoxTreeTerminator") {
+            const pugi::xml_node input = Archive::member(tree, "Input");
+            return Archive::is_null(input) ? always(place) : value_of(input);
+        }
+        refuse(place, fmt::format("'{}' of a network is not supported", kind),
+               "convert the body to Structured Text in TwinCAT");
+        return words("FALSE", place, "BOOL");
+    }
+
+    /// An operand, as it is written. Empty: nothing is.
+    Value written(pugi::xml_node operand) {
+        const pugi::xml_node named = Archive::member(operand, "Operand");
+        const std::string plain = archive_.text(operand, "Operand");
+        if (plain.empty()) return {};
+        const Mark place = place_of(operand, plain);
+        if (st::same_name(plain, "true")) return always(place);
+        if (plain == "???") {
+            refuse(place, "an operand is missing here", "name it, or remove it");
+            return words("FALSE", place, "BOOL");
+        }
+        Value made{.text = {}, .form = shape_of(plain), .type = archive_.text(operand, "Type")};
+        if (made.type.empty() && archive_.is_true(operand, "Boolean")) made.type = "BOOL";
+        made.text.draw(place.drawn);
+        std::vector<Part> parts = file_.texts(named);
+        if (parts.size() != 1 || file_.text(parts.front()) != fmt::format("\"{}\"", plain))
+            return words(plain, place, made.type);
+        file_.copy(made.text, {parts.front().begin + 1, parts.front().end - 1});
+        return made;
+    }
+
+    Value marked(Value value, const Marks& marks, const Mark& place) {
+        if (value.is_empty()) return value;
+        if (marks.is_rising || marks.is_falling)
+            value = edge_of(value, marks.is_rising ? "R_TRIG" : "F_TRIG", place);
+        return marks.is_negated ? negated(value, place) : value;
+    }
+
+    Value edge_of(const Value& value, std::string_view type, const Mark& place) {
+        if (!is_kept_)
+            refuse(place, "an edge needs a variable that is kept from scan to scan",
+                   "draw it in a function block or a program");
+        const std::string name = variables_.make("_edge", type);
+        now_.write(name + "(CLK := ", place);
+        now_.append(value.text);
+        now_.write(");\n", place);
+        return words(name + ".Q", place, "BOOL");
+    }
+
+    /// A wire that leads to several. Where it has an input it is defined.
+    Value value_of_wire(pugi::xml_node wire, const Mark& place) {
+        const std::string number = archive_.text(wire, "VarId");
+        const pugi::xml_node input = Archive::member(wire, "Input");
+        if (!Archive::is_null(input)) {
+            Value value = value_of(input);
+            if (value.is_empty()) value = always(place);
+            return wires_[number] = fixed(value, place);
+        }
+        const auto it = wires_.find(number);
+        if (it != wires_.end()) return it->second;
+        refuse(place, fmt::format("the wire {} leads here, and nothing leads to it", number),
+               "draw it anew");
+        return words("FALSE", place, "BOOL");
+    }
+
+    /// Branches beside each other, behind what leads to all of them.
+    Value value_of_parallel(pugi::xml_node parallel, const Mark& place) {
+        const pugi::xml_node input = Archive::member(parallel, "Input");
+        const Value before = value_of(input);
+        const std::size_t done = now_.text().size();
+        Value value;
+        for (const pugi::xml_node tree : Archive::items(Archive::member(parallel, "Trees")))
+            value = either(std::move(value), value_of(tree), place);
+        const bool may_be_left_out =
+            !before.is_empty() || archive_.text(parallel, "Mode") == "BoxShortCircuit";
+        if (may_be_left_out && now_.text().size() > done)
+            refuse(place, "a box in one of several branches may not be called in each scan",
+                   "draw it before them");
+        return both(before, value, place);
+    }
+
+    /// Its targets take what leads to it.
+    Value assign(pugi::xml_node assignment) {
+        const Mark place = place_of(assignment, "an assignment");
+        Value value = value_of(Archive::member(assignment, "RValue"));
+        if (value.is_empty()) value = always(place);
+        value = marked(value, plain_marks(archive_.marks_of(assignment)), place);
+        const auto targets = Archive::items(
+            Archive::member(Archive::member(assignment, "OutputItems"), "OutputItems"));
+        if (targets.size() > 1) {
+            if (value.type.empty()) value.type = archive_.text(targets.front(), "Type");
+            value = fixed(value, place);
+        }
+        for (const pugi::xml_node target : targets)
+            if (!Archive::is_null(target)) assign(target, value);
+        return value;
+    }
+
+    /// A jump and a return are marked at the assignment and at its target.
+    static Marks plain_marks(Marks marks) {
+        marks.is_jump = marks.is_return = marks.is_set = false;
+        return marks;
+    }
+
+    void assign(pugi::xml_node target, Value value) {
+        const Marks marks = archive_.marks_of(target);
+        const std::string name = archive_.text(target, "Operand");
+        const Mark place = place_of(target, name);
+        if (marks.is_jump || marks.is_return) return leave(name, marks.is_jump, value, place);
+        if (marks.is_rising || marks.is_falling)
+            value = edge_of(value, marks.is_rising ? "R_TRIG" : "F_TRIG", place);
+        const Value to = written(target);
+        if (to.is_empty()) return;
+        if (marks.is_set) {
+            write_if(value, place);
+            now_.append(to.text);
+            now_.write(marks.is_negated ? " := FALSE;\n" : " := TRUE;\n", place);
+            return write_end_if(value, place);
+        }
+        now_.append(to.text);
+        now_.write(" := ", place);
+        now_.append((marks.is_negated ? negated(value, place) : value).text);
+        now_.write(";\n", place);
+    }
+
+    void leave(const std::string& label, bool is_jump, const Value& when, const Mark& place) {
+        if (is_jump && jumps_.number_of(label) == 0)
+            return out_.add(code::not_declared, place,
+                            fmt::format("there is no label '{}' in this body", label));
+        write_if(when, place);
+        now_.write(is_jump ? jumps_.leaving(label) + "\n" : "RETURN;\n", place);
+        write_end_if(when, place);
+        if (is_jump) jumps_.jump(label, std::exchange(now_, {}), place);
+    }
+
+    /// What a box is given is evaluated here.
+    Box read_box(pugi::xml_node node) {
+        Box box{.node = node,
+                .type = archive_.text(node, "BoxType"),
+                .instance = archive_.text(Archive::member(node, "Instance"), "Operand"),
+                .names = archive_.strings(Archive::member(node, "InputParam"), "Names"),
+                .takers = Archive::items(
+                    Archive::member(Archive::member(node, "OutputItems"), "OutputItems")),
+                .outputs = archive_.strings(Archive::member(node, "OutputParam"), "Names"),
+                .output_types = archive_.strings(Archive::member(node, "OutputParam"), "Types"),
+                .has_enable = archive_.is_true(node, "EN"),
+                .has_eno = archive_.is_true(node, "ENO")};
+        box.place = place_of(node, "box " + box.type);
+        const auto marks = Archive::items(Archive::member(node, "InputFlags"));
+        const auto inputs = Archive::items(Archive::member(node, "InputItems"));
+        for (std::size_t i = 0; i < inputs.size(); ++i) {
+            Value value = value_of(inputs[i]);
+            if (i < marks.size())
+                value = marked(std::move(value), archive_.marks_in(marks[i]), box.place);
+            box.inputs.push_back(std::move(value));
+        }
+        if (box.has_enable && !box.inputs.empty()) {
+            box.enabled = box.inputs.front();
+            box.inputs.erase(box.inputs.begin());
+            if (!box.names.empty()) box.names.erase(box.names.begin());
+            if (box.has_eno) box.enabled = fixed(box.enabled, box.place);
+        }
+        return box;
+    }
+
+    Value enabled_of(const Box& box) const {
+        return box.enabled.is_empty() ? always(box.place) : box.enabled;
+    }
+
+    /// Statements of a box, and what it gives to what is behind it.
+    Value value_of_box(pugi::xml_node node, bool is_taken) {
+        Box box = read_box(node);
+        const std::string call = archive_.text(node, "CallType");
+        if (archive_.is_true(node, "ProvidesSTSnippet")) {
+            refuse(box.place, "a box with Structured Text in it is not supported",
+                   "put the text into an action");
+            return words("FALSE", box.place, "BOOL");
+        }
+        const bool is_block = !box.instance.empty() || call == "FunctionBlock" ||
+                              call == "Program" || call == "Action";
+        const Value value = is_block ? call_block(box) : call_function(box, is_taken);
+        return marked(value, plain_marks(archive_.marks_of(node)), box.place);
+    }
+
+    Value call_block(const Box& box) {
+        const std::string callee = box.instance.empty() ? box.type : box.instance;
+        const Value called = box.instance.empty() ? words(callee, box.place)
+                                                  : written(Archive::member(box.node, "Instance"));
+        const auto output = [&](std::size_t i) {
+            if (box.has_eno && i == 0) return enabled_of(box);
+            Value made{.text = {}, .type = box.output_type(i)};
+            made.text.append(called.text);
+            made.text.write(fmt::format(".{}", i < box.outputs.size() ? box.outputs[i] : "?"),
+                            box.place);
+            return made;
+        };
+        write_if(box.enabled, box.place);
+        now_.append(called.text);
+        now_.append(arguments_of(box, true));
+        now_.write(";\n", box.place);
+        for (std::size_t i = box.result(); i < box.takers.size(); ++i) give(box, i, output(i));
+        write_end_if(box.enabled, box.place);
+        if (box.has_eno) give(box, 0, enabled_of(box));
+        return box.main() < box.outputs.size() ? output(box.main()) : enabled_of(box);
+    }
+
+    /// To what is connected to an output.
+    void give(const Box& box, std::size_t output, const Value& value) {
+        if (output >= box.takers.size() || Archive::is_null(box.takers[output])) return;
+        const Marks marks = archive_.marks_of(box.takers[output]);
+        if (marks.is_jump || marks.is_return)
+            return refuse(box.place, "a jump at an output of a box is not supported",
+                          "draw it behind a contact");
+        assign(box.takers[output], value);
+    }
+
+    /// `(IN := a, PT := b)`; of a function without names `(a, b)`.
+    Excerpts arguments_of(const Box& box, bool is_block) {
+        Excerpts made;
+        made.write("(", box.place);
+        const bool is_named =
+            box.names.size() >= box.inputs.size() &&
+            std::ranges::none_of(box.names, [](const auto& name) { return name.empty(); });
+        std::string_view comma;
+        for (std::size_t i = 0; i < box.inputs.size(); ++i) {
+            if (box.inputs[i].is_empty()) continue;
+            made.write(comma, box.place);
+            if (is_named) made.write(box.names[i] + " := ", box.place);
+            made.append(box.inputs[i].text);
+            comma = ", ";
+        }
+        for (std::size_t i = box.result() + 1; !is_block && i < box.takers.size(); ++i) {
+            if (Archive::is_null(box.takers[i]) || i >= box.outputs.size()) continue;
+            made.write(fmt::format("{}{} => ", comma, box.outputs[i]), box.place);
+            made.append(written(box.takers[i]).text);
+            comma = ", ";
+        }
+        made.write(")", box.place);
+        return made;
+    }
+
+    Value call_function(const Box& box, bool is_taken) {
+        const std::size_t result = box.result();
+        const bool is_assigned =
+            result < box.takers.size() && !Archive::is_null(box.takers[result]);
+        const bool is_result_taken = is_taken && box.main() == result;
+        Value value = result_of(box);
+        if (is_assigned) {
+            write_if(box.enabled, box.place);
+            give(box, result, value);
+            write_end_if(box.enabled, box.place);
+            if (is_result_taken) value = written(box.takers[result]);
+        } else if (!is_result_taken && !is_operator(box)) {
+            write_if(box.enabled, box.place);
+            now_.append(value.text);
+            now_.write(";\n", box.place);
+            write_end_if(box.enabled, box.place);
+        }
+        if (box.has_eno) give(box, 0, enabled_of(box));
+        if (!is_result_taken) return enabled_of(box);
+        return is_assigned ? value : if_enabled(box, value);
+    }
+
+    /// While a box is not enabled its result is FALSE, or stays as it is.
+    Value if_enabled(const Box& box, const Value& value) {
+        if (box.enabled.is_empty() || box.enabled.is_always) return value;
+        if (value.type == "BOOL") return both(box.enabled, value, box.place);
+        if (!is_type_name(value.type)) {
+            refuse(box.place, "the type of what comes out of this box is not known",
+                   "assign it to a variable, and take that");
+            return value;
+        }
+        const std::string name = variables_.make("_wire", value.type);
+        write_if(box.enabled, box.place);
+        const Value kept = kept_in(name, value, box.place);
+        write_end_if(box.enabled, box.place);
+        return kept;
+    }
+
+    static bool is(const Box& box, std::string_view name) { return st::same_name(box.type, name); }
+    static bool is_operator(const Box& box) {
+        return !infix_of(box.type).empty() || is(box, "and") || is(box, "or") || is(box, "not") ||
+               is(box, "move");
+    }
+
+    Value result_of(const Box& box) {
+        if (is_operator(box)) {
+            if (box.inputs.empty() || std::ranges::any_of(box.inputs, &Value::is_empty)) {
+                refuse(box.place, "nothing leads to an input of this box", "connect it");
+                return words("FALSE", box.place, "BOOL");
+            }
+            if (is(box, "move")) return box.inputs.front();
+            if (is(box, "not")) return negated(box.inputs.front(), box.place);
+            if (is(box, "and") || is(box, "or")) return joined(box, is(box, "and"));
+            return joined(box, infix_of(box.type));
+        }
+        Value made;
+        if (archive_.text(box.node, "CallType") == "Function")
+            made.type = box.output_type(box.result());
+        made.text.write(box.type, box.place);
+        made.text.append(arguments_of(box, false));
+        return made;
+    }
+
+    Value joined(const Box& box, bool is_and) const {
+        Value made;
+        const std::string type = box.inputs.front().type;
+        for (const Value& input : box.inputs)
+            made = is_and ? both(std::move(made), input, box.place)
+                          : either(std::move(made), input, box.place);
+        if (!made.is_always) made.type = type;
+        return made;
+    }
+
+    Value joined(const Box& box, std::string_view infix) const {
+        Value made{.text = {}, .form = Value::Form::other, .type = box.inputs.front().type};
+        for (const Value& input : box.inputs) {
+            if (!made.is_empty()) made.text.write(infix, box.place);
+            made.text.append(enclosed(input, box.place));
+        }
+        if (compares(box.type)) made.type = "BOOL";
+        return made;
+    }
+
+    Archive archive_;
+    const XmlFile& file_;
+    Diagnostics& out_;
+    MadeVariables& variables_;
+    bool is_kept_;
+    std::vector<pugi::xml_node> networks_;
+    Jumps jumps_;
+    std::map<std::string, Value> wires_;  ///< of the network, by their numbers
+    Excerpts now_;                        ///< statements since the last label or jump
+    std::size_t network_ = 0;             ///< under way, from 1 on
+    int depth_ = 0;
+};
+
+}  // namespace
+
+Excerpts text_of_box_trees(const XmlFile& file, Diagnostics& out, MadeVariables& variables,
+                           bool is_kept, pugi::xml_node body) {
+    return BoxTrees(file, out, variables, is_kept, body).statements();
+}
+
+}  // namespace lineshaft::projects
