@@ -109,6 +109,7 @@ Catalog make_catalog() {
     blocks.add<GroupContinue>();
     blocks.add<GroupSetOverride>();
     blocks.add<SetCartesianTransform>();
+    blocks.add<GroupPower>();
     blocks.add<GroupReadStatus>();
     blocks.add<GroupReadError>();
     blocks.add<GroupReadActualPosition>();

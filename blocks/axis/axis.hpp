@@ -192,6 +192,8 @@ struct Axis {
     void end_following(const Context& context, const Moment& at);
     /// Ends an error that is over; false while the axis still brakes.
     bool reset_by_group();
+    /// MC_GroupPower, as MC_Power in both directions.
+    void switch_power_by_group(const Context& context, const Moment& at, bool on);
     /// Whether the software limits hold these positions, and MC_Power the directions.
     MotionError cannot_run(double from, double to, double least, double greatest) const;
     bool may_go(double way) const;

@@ -49,6 +49,13 @@ bool Axis::reset_by_group() {
     return true;
 }
 
+void Axis::switch_power_by_group(const Context& context, const Moment& at, bool on) {
+    Request request;
+    request.command = on ? Command::power_on : Command::power_off;
+    request.enables_positive = request.enables_negative = 1;
+    switch_power(context, at, request);
+}
+
 MotionError Axis::cannot_run(double from, double to, double least, double greatest) const {
     if (software_limits && !bounds().contain({least, greatest})) return MotionError::software_limit;
     const bool forward = greatest > from || to > least, back = least < from || to < greatest;

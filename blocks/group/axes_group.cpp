@@ -140,6 +140,16 @@ bool AxesGroup::has_unlaid(const Context& context) const {
     return context.at<GroupJob>(queue.last).is_laid == 0;
 }
 
+bool AxesGroup::is_powered(const Context& context) const {
+    bool is_any = false;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Axis* const seen = axis(context, i);
+        if (seen && seen->state == AxisState::disabled) return false;
+        is_any = is_any || seen;
+    }
+    return is_any;
+}
+
 PathVector AxesGroup::actual_position(const Context& context) const {
     PathVector out{};
     for (std::size_t i = 0; i < most_path_axes; ++i)

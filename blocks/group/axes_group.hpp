@@ -75,6 +75,9 @@ struct AxesGroup {
     /// Of the axes, by the drives where they have some; 0 where there is none.
     PathVector actual_position(const Context& context) const;
 
+    /// All of its axes are, and there are some.
+    bool is_powered(const Context& context) const;
+
     /// Where coordinates of this kind stand in those of the machine.
     PathFrame frame_of(CoordSystem coordinates) const {
         return coordinates == CoordSystem::product ? frame : PathFrame{};
@@ -104,6 +107,7 @@ struct AxesGroup {
     void disable(const Context& context);
     MotionError set_override(const Context& context, GroupJob& job);
     void set_transform(const GroupRequest& request);
+    void switch_power(const Context& context, const GroupRequest& request);
     void begin_interrupt(const Context& context, GroupJob& job);
     MotionError go_on(const Context& context);
     void hold(const Context& context, GroupJob& job);

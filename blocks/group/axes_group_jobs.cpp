@@ -81,6 +81,9 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
         case GroupCommand::set_transform:
             set_transform(job.request);
             return MotionError::none;
+        case GroupCommand::power:
+            switch_power(context, job.request);
+            return MotionError::none;
         default:
             return set_override(context, job);
     }
@@ -152,6 +155,13 @@ MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
     overriding = {context.place_of(job), job.ticket, request.command};
     path.set_override(request.velocity_factor);
     return MotionError::none;
+}
+
+/// Without it an axis leaves the path that it is on.
+void AxesGroup::switch_power(const Context& context, const GroupRequest& request) {
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (Axis* const led = axis(context, i))
+            led->switch_power_by_group(context, {time}, request.holds != 0);
 }
 
 /// Moves that have been taken up keep the one of before.

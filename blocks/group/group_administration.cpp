@@ -66,6 +66,30 @@ void GroupSetOverride::scan(const Scan& now, const Context& context) {
     done = done && execute;
 }
 
+std::span<const Field> GroupPower::fields() {
+    using B = GroupPower;
+    static const Field table[] = {
+        group_pin::group(),
+        input("Enable", &B::execute, "", "the power is on"),
+        output("Status", &B::status, "", "the power of all axes is on, as they have it"),
+        output("Valid", &B::active, "", "Status can be relied on"),
+        output("Error", &B::error, "", "there is no group"),
+        output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names),
+    };
+    return table;
+}
+
+void GroupPower::scan(const Scan& now, const Context& context) {
+    const bool changed = !started || execute != last_execute;
+    pins.holds = execute ? 1 : 0;
+    last_execute = execute;
+    if (changed) start(now, context);
+    error = refusal != MotionError::none;
+    error_id = refusal;
+    active = !error;
+    status = !error && context.seen_instance<AxesGroup>(group).is_powered(context);
+}
+
 namespace group_kinds {
 
 std::span<const Field> remove_axis_fields() {

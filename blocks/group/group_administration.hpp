@@ -36,6 +36,17 @@ struct GroupSetOverride : GroupCommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
+/// MC_GroupPower: MC_Power of all axes of a group, whatever state it is in.
+struct GroupPower : GroupCommandBlock {
+    bool status = false;
+
+    static constexpr std::string_view type = "MC_GroupPower";
+    static constexpr std::string_view doc = "switches the power of all axes of a group on and off";
+    static std::span<const Field> fields();
+    constexpr GroupPower() { pins.command = GroupCommand::power; }
+    void scan(const Scan& now, const Context& context);
+};
+
 namespace group_kinds {
 
 std::span<const Field> remove_axis_fields();

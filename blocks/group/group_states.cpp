@@ -26,6 +26,7 @@ constexpr GroupStateRow group_rows[] = {
     {G::go_on,                  "MC_GroupContinue",           {no,  no,  Mov, no,  no,  no }},
     {G::set_override,           "MC_GroupSetOverride",        {Dis, Sby, Mov, Hom, Stp, Err}},
     {G::set_transform,          "MC_SetCartesianTransform",   {Dis, Sby, Mov, Hom, Stp, Err}},
+    {G::power,                  "MC_GroupPower",              {Dis, Sby, Mov, Hom, Stp, Err}},
     {G::move_linear_absolute,   "MC_MoveLinearAbsolute",      {no,  Mov, Mov, no,  no,  no }},
     {G::move_linear_relative,   "MC_MoveLinearRelative",      {no,  Mov, Mov, no,  no,  no }},
     {G::move_circular_absolute, "MC_MoveCircularAbsolute",    {no,  Mov, Mov, no,  no,  no }},

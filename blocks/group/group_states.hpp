@@ -30,6 +30,7 @@ enum class GroupCommand : std::int64_t {
     go_on,
     set_override,
     set_transform,
+    power,
     move_linear_absolute,
     move_linear_relative,
     move_circular_absolute,

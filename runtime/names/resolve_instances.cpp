@@ -74,6 +74,21 @@ int find_global(const Resolving& to, std::string_view name) {
                                            : static_cast<int>(other - to.net.instances.begin());
 }
 
+constexpr int none = -1, several = -2;
+
+/// A PROGRAM that the sources name as such is the only block of its type, whatever that is called.
+int find_only_program(const Resolving& to, const Field& field) {
+    if (!same_letters(field.global, field.refers)) return none;
+    const auto is_it = [&](const Instance& block) {
+        return block.type && block.type->name == field.refers;
+    };
+    const auto first = std::ranges::find_if(to.net.instances, is_it);
+    if (first == to.net.instances.end()) return none;
+    return std::any_of(first + 1, to.net.instances.end(), is_it)
+               ? several
+               : static_cast<int>(first - to.net.instances.begin());
+}
+
 void refuse_global(Resolving& to, const Instance& block, const Node& place, const Field& field,
                    int found) {
     if (found >= 0)
@@ -85,6 +100,12 @@ void refuse_global(Resolving& to, const Instance& block, const Node& place, cons
     std::vector<std::string> fitting;
     for (const Instance& other : to.net.instances)
         if (other.type && other.type->name == field.refers) fitting.push_back(other.name);
+    if (found == several)
+        return to.read.fail(
+            code::unknown_block, place,
+            fmt::format("the sources of {} name the program {}, and there are {}",
+                        block.described(), field.global, fitting.size()),
+            fmt::format("call one of them {}: {}", field.global, fmt::join(fitting, ", ")));
     const std::string known = suggest(std::string(field.global), fitting);
     to.read.fail(code::unknown_block, place,
                  fmt::format("the sources of {} name {}, and the program has no {} '{}'",
@@ -96,7 +117,8 @@ void refuse_global(Resolving& to, const Instance& block, const Node& place, cons
 
 void refer_to_global(Resolving& to, int number, const Field& field) {
     Instance& block = to.net.instances[static_cast<std::size_t>(number)];
-    const int other = find_global(to, field.global);
+    int other = find_global(to, field.global);
+    if (other < 0) other = find_only_program(to, field);
     if (other >= 0 && !to.net.instance(other).known()) return;
     if (other >= 0 && to.net.instance(other).type->name == field.refers) {
         to.net.references.push_back({to.net.port(number, field), other});
@@ -104,7 +126,7 @@ void refer_to_global(Resolving& to, int number, const Field& field) {
     }
     const BlockType* kind = to.net.kinds ? to.net.kinds->find(field.refers) : nullptr;
     if (kind && kind->single) return;  // another block has its name, which has been told
-    if (kind && other < 0 && to.net.main_task >= 0) {
+    if (kind && other == none && to.net.main_task >= 0) {
         const auto added = static_cast<int>(to.net.instances.size());
         Instance made{.name = std::string(field.global), .type = kind, .task = to.net.main_task};
         construct(made);

@@ -33,7 +33,7 @@ void make_object(Checking& c, Variable& variable) {
 Variable* declare_program(Checking& c, const Token& name) {
     const bool is_plain = name.place.source && !name.quoted && !name.local;
     const Routine* program =
-        is_plain && name.place.dialect().is_loose ? c.find_routine(name) : nullptr;
+        is_plain && name.place.dialect().programs_are_named ? c.find_routine(name) : nullptr;
     if (!program || program->pou->kind != PouKind::program) return nullptr;
     Variable& variable = c.make_variable(program->pou->name, program->name, program->type);
     declare_object(c, variable);

@@ -11,6 +11,7 @@ const Dialect iec = {.sign_precedes_power = true,
                      .constants_have_values = true,
                      .quotes_may_enclose_texts = true,
                      .named_inputs_may_be_left_out = true,
+                     .programs_are_named = true,
                      .selects_by_texts = true,
                      .loops_begin_narrowed = true};
 
@@ -26,6 +27,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .dint_becomes_real = true,
                          .bits_count_in_reals = true,
                          .is_loose = true,
+                         .programs_are_named = true,
                          .texts_are_bytes = true};
 
 const Dialect scl = {.sign_precedes_power = false,

@@ -192,6 +192,34 @@ TEST_CASE("group: interrupt keeps the path and its command, halt and stop give i
     CHECK(state(bench) == "standby");
 }
 
+TEST_CASE("group: power is that of all axes, and without it the path is left") {
+    MotionBench bench(table_with(R"(
+  power: {type: MC_GroupPower, task: servo, AxesGroup: group, Enable: true}
+  line: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 60 mm, Position2: 30 mm, Position4: 350 deg}
+  reset: {type: MC_GroupReset, task: servo, AxesGroup: group}
+)"));
+    bench.step(20);
+    CHECK(bench.is("power.Status"));
+    CHECK(bench.is("power.Valid"));
+    bench.set("line.Execute", true);
+    bench.step(500);
+    bench.set("power.Enable", false);
+    bench.step(3);
+    CHECK_FALSE(bench.is("power.Status"));
+    CHECK(bench.is("line.Error"));
+    CHECK(state(bench) == "error_stop");
+    bench.step(2000);
+    CHECK(bench.number("x.velocity") == 0);
+    bench.set("line.Execute", false);
+    bench.set("power.Enable", true);
+    bench.set("reset.Execute", true);
+    REQUIRE(comes(bench, "reset.Done", 400));
+    CHECK(bench.is("power.Status"));
+    bench.set("line.Execute", true);
+    REQUIRE(comes(bench, "line.Done"));
+    CHECK(bench.number("y.position") == 30);
+}
+
 TEST_CASE("group: a move that aborts begins where the group has stopped on its path") {
     MotionBench bench(table_with(R"(
   first: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 60 mm, Position4: 350 deg}
