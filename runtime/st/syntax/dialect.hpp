@@ -17,12 +17,11 @@ struct Dialect {
     bool numbers_stand_for_names = false;  ///< 1 for `mcPositiveDirection`, as Siemens counts them
     bool texts_of_integers_have_signs = false;  ///< INT_TO_STRING(5) is '+5', else '5'
     bool bits_count_in_reals = false;  ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
-    bool is_loose =
-        false;  ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a)
-    bool programs_are_named = false;  ///< `Main.count` of a PROGRAM, of which there is one then
-    bool texts_are_bytes = false;   ///< `text[0]` is the first BYTE, and a 0 ends the text; else
-                                    ///< `text[1]` is the first CHAR
-    bool selects_by_texts = false;  ///< CASE of a STRING, as SIMATIC AX has it
+    bool is_loose = false;             ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a)
+    bool programs_are_named = false;   ///< `Main.count` of a PROGRAM, of which there is one then
+    bool texts_are_bytes = false;      ///< `text[0]` is the first BYTE, and a 0 ends the text; else
+                                       ///< `text[1]` is the first CHAR
+    bool selects_by_texts = false;     ///< CASE of a STRING, as SIMATIC AX has it
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
