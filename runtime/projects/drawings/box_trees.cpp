@@ -370,15 +370,30 @@ class BoxTrees {
     Value value_of_box(pugi::xml_node node, bool is_taken) {
         Box box = read_box(node);
         const std::string call = archive_.text(node, "CallType");
-        if (archive_.is_true(node, "ProvidesSTSnippet")) {
-            refuse(box.place, "a box with Structured Text in it is not supported",
-                   "put the text into an action");
-            return words("FALSE", box.place, "BOOL");
-        }
+        if (archive_.is_true(node, "ProvidesSTSnippet")) return execute(box);
         const bool is_block = !box.instance.empty() || call == "FunctionBlock" ||
                               call == "Program" || call == "Action";
         const Value value = is_block ? call_block(box) : call_function(box, is_taken);
         return marked(value, plain_marks(archive_.marks_of(node)), box.place);
+    }
+
+    /// A box with Structured Text in it.
+    Value execute(const Box& box) {
+        const pugi::xml_node snippet =
+            Archive::member(Archive::member(box.node, "STSnippet"), "STSnippet");
+        const pugi::xml_node text =
+            Archive::member(Archive::member(snippet, "TextDocument"), "TextBlobForSerialisation");
+        const std::vector<Part> parts = file_.texts(text);
+        write_if(box.enabled, box.place);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const std::size_t quote = file_.text(parts[i]).size() > 1 ? 1 : 0;
+            const std::size_t begin = parts[i].begin + (i == 0 ? quote : 0);
+            const std::size_t end = parts[i].end - (i + 1 == parts.size() ? quote : 0);
+            file_.copy(now_, {begin, end});
+        }
+        now_.write("\n", box.place);
+        write_end_if(box.enabled, box.place);
+        return enabled_of(box);
     }
 
     Value call_block(const Box& box) {

@@ -193,9 +193,22 @@ Routine& begin_of_globals(Checking& c, const Expression& like) {
     return made;
 }
 
-/// No other block has an instance of it, so that nothing runs before it.
+/// An instance of the block, or an array or a structure of them.
+bool holds(const Type& type, const Routine& block) {
+    if (type.kind == Kind::array) return holds(*type.element, block);
+    if (type.kind == Kind::structure)
+        return std::ranges::any_of(type.members, [&](const Variable* member) {
+            return member->type && holds(*member->type, block);
+        });
+    return type.kind == Kind::block && type.routine == &block;
+}
+
+/// No other block has an instance of it, nor has VAR_GLOBAL, so that nothing runs before it.
 bool is_first(const Checking& c, const Routine& block) {
     if (block.is_test() || block.pou->kind == PouKind::program) return true;
+    if (std::ranges::any_of(c.checked.globals,
+                            [&](const Global& global) { return holds(*global.type, block); }))
+        return false;
     const auto has_it = [&](const Routine& other) {
         return other.owner != &block &&
                std::ranges::find(other.calls, &block, &Called::routine) != other.calls.end();

@@ -31,14 +31,15 @@ bool is_own_input(const Expression& e) {
            (!e.type->is_scalar() || e.type->is_handle());
 }
 
-/// CODESYS lends what a program has.
-bool is_of_program(const Expression& e) {
+/// CODESYS lends what a program has, and outputs of a block.
+bool is_lent(const Expression& e) {
     const Expression* root = &e;
     while (root->kind == E::index || root->kind == E::bit) root = root->operands[0];
     if (root->kind != E::member || !root->operands[0]->type) return false;
     const Type& of = *root->operands[0]->type;
     return e.place.dialect().is_loose && of.kind == Kind::block && of.routine &&
-           of.routine->pou->kind == PouKind::program;
+           (of.routine->pou->kind == PouKind::program ||
+            (root->variable && root->variable->section == Section::output));
 }
 
 /// A variable may bear a function's name, but no instance can be meant then.
@@ -51,7 +52,10 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
     std::size_t i = 0;
-    const std::vector<Variable*> variables = all_variables(routine);
+    std::vector<Variable*> variables = all_variables(routine);
+    const auto is_given = [](const Variable* v) { return v->section != Section::output; };
+    const bool outputs_last = routine.pou->name.place.dialect().is_loose;
+    if (outputs_last) std::ranges::stable_partition(variables, is_given);
     for (Variable* variable : variables) {
         if (!variable->is_parameter() && !inner) continue;
         if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
@@ -124,7 +128,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     }
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;
     const bool is_read = is_constant || (parameter.section == Section::in_out &&
-                                         (is_own_input(*value) || is_of_program(*value)));
+                                         (is_own_input(*value) || is_lent(*value)));
     const bool is_place = is_variable(*value) || (argument.is_output && value->kind == E::bit);
     if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {

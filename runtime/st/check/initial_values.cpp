@@ -120,6 +120,20 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
                "leave some out, or make the array larger");
 }
 
+/// CODESYS: a property that is set when the instance begins. False: there is none.
+bool begins_property(Checking& c, Argument& argument, const Type& type) {
+    if (type.kind != Kind::block || !argument.is_named()) return false;
+    const Routine* setter = find_in(type.routine->setters, argument.name.text);
+    const auto is_input = [](const Variable& v) { return v.section == Section::input && v.type; };
+    const auto given = setter ? std::ranges::find_if(setter->variables, is_input)
+                              : decltype(setter->variables.begin()){};
+    if (!setter || given == setter->variables.end()) return false;
+    c.beginning.path.emplace_back(argument.name.text, 0);
+    const bool begins = begin_with(c, argument.value, *given->type);
+    c.beginning.path.pop_back();
+    return begins;
+}
+
 /// By name, or of a structure by position.
 void check_members(Checking& c, Expression& list, const Type& type) {
     const bool by_place =
@@ -129,6 +143,10 @@ void check_members(Checking& c, Expression& list, const Type& type) {
             code::value_out_of_range, list.place,
             fmt::format("{} values for {} members", list.arguments.size(), type.members.size()),
             "leave some out");
+    std::erase_if(list.arguments, [&](Argument& argument) {
+        return !by_place && !find_member(type, argument.name.text) &&
+               begins_property(c, argument, type);
+    });
     for (std::size_t i = 0; i < list.arguments.size(); ++i) {
         Argument& argument = list.arguments[i];
         if (!by_place && !argument.is_named()) {

@@ -1,5 +1,7 @@
 #include "runtime/st/check/statements.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <span>
 
@@ -96,27 +98,33 @@ bool is_of_variable(Checking& c, const Expression& e) {
     return find_variable(c, e.token) || is_own_instance(c, e);
 }
 
-/// `motor.Turn(speed := 5);` of an ACTION gives the block's inputs, and then runs it.
-bool gives_inputs(Checking& c, Statement*& s) {
+/// `motor.Turn(speed := 5, done => stands);` of an ACTION gives the block's inputs, runs it, and
+/// takes the block's outputs.
+bool runs_with_pins(Checking& c, Statement*& s) {
     const Expression& call = *s->value;
-    const auto is_given = [](const Argument& a) { return a.is_named() && a.value && !a.is_output; };
+    const auto is_given = [](const Argument& a) { return a.is_named() && a.value; };
     if (call.kind != E::call || call.arguments.empty() || call.type ||
         !std::ranges::all_of(call.arguments, is_given))
         return false;
     Expression* callee = call.operands[0];
     if (callee->kind == E::member && !is_of_variable(c, *callee->operands[0])) return false;
     if (!find_action(c, *callee)) return false;
-    Block made;
+    Block made, taken;
     for (const Argument& argument : call.arguments) {
         Expression like;
         like.token = argument.name;
         like.place = argument.name.place;
-        Expression* input = callee->kind == E::member
-                                ? make_member(c, callee->operands[0], argument.name.text)
-                                : make_name(c, like, argument.name.text);
-        made.push_back(make_assignment(c, argument.value->place, input, argument.value));
+        Expression* pin = callee->kind == E::member
+                              ? make_member(c, callee->operands[0], argument.name.text)
+                              : make_name(c, like, argument.name.text);
+        const Place place = argument.value->place;
+        if (argument.is_output)
+            taken.push_back(make_assignment(c, place, argument.value, pin));
+        else
+            made.push_back(make_assignment(c, place, pin, argument.value));
     }
     made.push_back(make_call_statement(c, make_with(c, call, {})));
+    std::ranges::move(taken, std::back_inserter(made));
     s = make_sequence(c, s->place, std::move(made));
     check(c, s);
     return true;
@@ -314,7 +322,7 @@ void check(Checking& c, Statement*& slot) {
         case S::assign:
             return check_assignment(c, slot);
         case S::call:
-            if (!gives_inputs(c, slot)) check_call(c, s);
+            if (!runs_with_pins(c, slot)) check_call(c, s);
             return;
         case S::action:
             return check_action(c, slot);

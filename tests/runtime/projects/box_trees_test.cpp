@@ -174,6 +174,22 @@ TEST_CASE("a box with EN in TwinCAT's networks does nothing while it is FALSE") 
                                {operand("b")}))) == "\nb := a AND (x >= 1);\nEND_PROGRAM\n");
 }
 
+TEST_CASE("a box of TwinCAT's networks may have Structured Text in it") {
+    const std::string more =
+        value("ProvidesSTSnippet", "true") +
+        "<o n=\"STSnippet\" t=\"STSnippet\"><o n=\"STSnippet\"><o n=\"TextDocument\">" +
+        value("TextBlobForSerialisation", "\"IF x &gt; 1 THEN\n    y := 2;\nEND_IF\"") +
+        "</o></o></o>";
+    CHECK(text_of(network(box({.type = "EXECUTE",
+                               .call = "None",
+                               .inputs = {leaf("a")},
+                               .names = {"EN"},
+                               .outputs = {"ENO"},
+                               .has_en = true,
+                               .more = more}))) ==
+          "\nIF a THEN\nIF x > 1 THEN\n    y := 2;\nEND_IF\nEND_IF\nEND_PROGRAM\n");
+}
+
 TEST_CASE("jumps, returns and networks that are left out in TwinCAT's networks") {
     CHECK(text_of(network(assign(leaf("a"), {operand("end", jump)})) +
                   network(assign(leaf("b"), {operand("c")})) +
@@ -202,9 +218,6 @@ TEST_CASE("what TwinCAT's networks cannot say is told at its place") {
     CHECK(messages_of(network(
               assign(box({.type = "OR", .inputs = {leaf("a"), leaf("")}}), {operand("b")}))) ==
           "5: nothing leads to an input of this box (network 1, box OR)\n");
-    CHECK(messages_of(network(box(
-              {.type = "EXECUTE", .inputs = {}, .more = value("ProvidesSTSnippet", "true")}))) ==
-          "5: a box with Structured Text in it is not supported (network 1, box EXECUTE)\n");
     const std::string timer = box({.type = "TON",
                                    .call = "FunctionBlock",
                                    .instance = "timer",
