@@ -73,9 +73,41 @@ std::span<const TableField> PathTable::tables() {
         points.complete = [](std::byte* block) {
             return std::launder(reinterpret_cast<PathTable*>(block))->complete();
         };
+        points.outline = [](const std::byte* block) {
+            return std::launder(reinterpret_cast<const PathTable*>(block))->outline();
+        };
         return points;
     }()};
     return all;
+}
+
+std::vector<std::array<double, 2>> PathTable::outline() const {
+    constexpr int chords = 64;
+    std::vector<std::array<double, 2>> line;
+    if (table.size == 0) return line;
+    PathVector from = table.rows[0].target();
+    line.push_back({from[0], from[1]});
+    PathRowCurves curves;
+    PathCurve last;
+    const PathCurve* before = nullptr;
+    for (std::size_t i = 1; i < static_cast<std::size_t>(table.size); ++i) {
+        const PathTablePoint* const next =
+            i + 1 < static_cast<std::size_t>(table.size) ? &table.rows[i + 1] : nullptr;
+        std::size_t count = 0;
+        if (curves_of(table.rows[i], next, from, before, curves, count) != PathFault::none)
+            continue;
+        for (std::size_t k = 0; k < count; ++k) {
+            const int parts = curves[k].kind == PathCurveKind::line ? 1 : chords;
+            for (int part = 1; part <= parts; ++part) {
+                const PathVector x = curves[k].at(curves[k].length * part / parts).position;
+                line.push_back({x[0], x[1]});
+            }
+        }
+        last = curves[count - 1];
+        before = &last;
+        from = last.end;
+    }
+    return line;
 }
 
 std::optional<TableFault> PathTable::complete() {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "blocks/axis/axis_unit.hpp"
 #include "blocks/path/path_spline.hpp"
@@ -60,6 +61,9 @@ struct PathTable {
 
     /// A number that is missing or infinite.
     std::optional<TableFault> complete();
+
+    /// In the plane of the first two axes, from the first row's point on; curves as 64 chords each.
+    std::vector<std::array<double, 2>> outline() const;
 };
 
 }  // namespace lineshaft

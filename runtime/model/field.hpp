@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "runtime/model/value.hpp"
 
@@ -117,6 +118,9 @@ struct TableField {
     }
     std::optional<TableFault> (*complete)(std::byte* block) =
         nullptr;  ///< checks all rows, and puts in what they leave open; or null
+    /// The line through the plane that the rows describe from the first one on, in the unit of the
+    /// first column, for who draws it; null: they describe none.
+    std::vector<std::array<double, 2>> (*outline)(const std::byte* block) = nullptr;
 };
 
 namespace detail {

@@ -174,7 +174,7 @@ struct ExpectPlan {
 /// `report:`, each as it is written; what stands beside a mistake is not here.
 struct ReportPlan {
     std::optional<Node> plots = {}, own_axis = {}, hide = {}, curves = {}, paths = {}, circle = {},
-                        condition = {};
+                        band = {}, condition = {};
 };
 
 /// A program file as plain data: its structure is checked, its names are not yet.

@@ -41,6 +41,10 @@ const Form& report_form() {
                       "circle", list_of(a_number).within(3, 3),
                       "x, y and radius of the circle that the paths are compared with; else one "
                       "that is found in them"),
+                  key<&ReportPlan::band>(
+                      "band", list_of(a_value).within(2, 2),
+                      "a path_table, and how far from it: a band that is drawn along its points, "
+                      "beneath the paths"),
                   key<&ReportPlan::condition>(
                       "while", a_signal,
                       "a boolean signal: a path is compared with the circle while it is true")},
@@ -48,6 +52,12 @@ const Form& report_form() {
                     "circle",
                     {"paths"},
                     "'circle' is for paths, and there are none",
+                    "write paths: [[x.position, y.position]] beside it",
+                    the_key},
+                   {only_with,
+                    "band",
+                    {"paths"},
+                    "'band' is for paths, and there are none",
                     "write paths: [[x.position, y.position]] beside it",
                     the_key},
                    {only_with,

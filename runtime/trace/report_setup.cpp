@@ -34,6 +34,7 @@ class ReportSetup {
         if (report_.paths)
             for (const Node& pair : report_.paths->items) made["paths"].push_back(path(pair));
         if (report_.circle) made["circle"] = circle_of(*report_.circle);
+        if (report_.band) made["band"] = band_of(*report_.band);
         if (report_.condition) made["while"] = recorded(*report_.condition);
         return made;
     }
@@ -100,6 +101,45 @@ class ReportSetup {
             to_.read.fail(code::number_out_of_range, node.items[2],
                           fmt::format("the radius '{}' is not above 0", node.items[2].text));
         return made;
+    }
+
+    /// The table of a block whose rows describe a line; null: it has none.
+    static const TableField* find_outline(const Instance& block) {
+        if (!block.type) return nullptr;
+        const auto it = std::ranges::find_if(
+            block.type->tables, [](const TableField& table) { return table.outline != nullptr; });
+        return it == block.type->tables.end() ? nullptr : &*it;
+    }
+
+    /// A table's line, and how far from it the band reaches.
+    Json band_of(const Node& node) const {
+        if (node.items.size() != 2) {
+            to_.read.fail(code::entry_is_missing, node, "a band takes a table and a width",
+                          "write [plate, 0.5 mm]: how far it reaches from the points of plate");
+            return {};
+        }
+        const Node& name = node.items[0];
+        const auto it = to_.net.instance_numbers.find(name.text);
+        const Instance* block =
+            it == to_.net.instance_numbers.end() ? nullptr : &to_.net.instance(it->second);
+        const TableField* table = block ? find_outline(*block) : nullptr;
+        const auto unit = unit_of_paths();
+        if (!table) {
+            to_.read.fail(code::unknown_block, name,
+                          fmt::format("'{}' is no table of a path", name.text),
+                          "name a path_table of the program");
+            return {};
+        }
+        const auto within = unit ? to_.read.real(node.items[1], *unit) : std::nullopt;
+        if (!within) return {};
+        if (!(*within > 0))
+            to_.read.fail(code::number_out_of_range, node.items[1],
+                          fmt::format("the band '{}' is not above 0", node.items[1].text));
+        const Unit& own = to_.net.unit_of(*block, table->columns[0].unit);
+        Json points = Json::array();
+        for (const auto& [x, y] : table->outline(block->image.data()))
+            points.push_back({convert(x, own, *unit), convert(y, own, *unit)});
+        return {{"table", block->name}, {"within", *within}, {"points", std::move(points)}};
     }
 
     void check(const Node& formula) const {

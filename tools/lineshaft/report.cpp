@@ -246,6 +246,7 @@ Json make_report(const ReportCommand& command, Json studies, const std::vector<s
                 {"paths", paths_json(command, runs, said, out)},
                 {"while", condition_json(command, runs, said, out)},
                 {"circle", said.value("circle", Json())},
+                {"band", said.value("band", Json())},
                 {"arrangement", said}};
     ProgressLine line(command.quiet);
     for (const ReportRun& run : runs) {

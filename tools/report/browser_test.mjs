@@ -434,6 +434,29 @@ async function testArranged(browser) {
     }
 }
 
+/** The band around the points of a table, and how far from them the path is. */
+async function testBand(browser) {
+  run("run", "programs/14_contour.yaml", "--quiet", "--trace", file("contour.csv"));
+  const page = await open(browser, report("contour.html", file("contour.csv")));
+  await page.waitForFunction(() => document.querySelector(".figures td") !== null);
+  assert.match(await page.textContent(".figures thead"), /farthest from the points \[mm\]/);
+  const farthest = Number((await page.locator(".figures tbody td").allTextContents())[1]);
+  assert.ok(farthest > 0.4 && farthest <= 0.5, `${farthest} mm from the points`);
+  const beside = await page.$eval("canvas.path", (canvas) => {
+    const ctx = canvas.getContext("2d");
+    const { data, width } = ctx.getImageData(0, 0, canvas.width, canvas.height);
+    let grey = 0;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 3] > 50 && data[i + 3] < 80 && Math.abs(data[i] - data[i + 2]) < 40) grey += 1;
+    return grey / width;
+  });
+  assert.ok(beside > 10, `the band has ${beside} points for each of the width`);
+  assert.match(await page.evaluate(() => document.querySelector("pre")?.textContent ?? ""), /band: \["plate",0\.5\]|^$/);
+  await page.screenshot({ path: file("contour.png"), fullPage: true });
+  assert.deepEqual(page.problems, []);
+  await page.close();
+}
+
 /** Runs of different signals share a page, one colour a run. */
 async function testDifferentRuns(browser) {
   writeFileSync(file("left.csv"), "time [s],a.x [mm],a.y [mm]\n0,1,1\n1,2,1\n2,3,1\n");
@@ -643,7 +666,7 @@ async function testLarge(browser) {
 
 mkdirSync(folder, { recursive: true });
 await withBrowser(async (newPage) => {
-  for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testArranged,
+  for (const test of [testSamples, testSpike, testSmallNumbers, testCircle, testExpectations, testStudy, testArranged, testBand,
                       testDifferentRuns, testCircles, testSweep, testLarge]) {
     await test({ newPage });
     console.log(`ok ${test.name}`);

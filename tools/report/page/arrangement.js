@@ -109,6 +109,7 @@ export class Arrangement {
     const said = { ...this.initial, ...rest, hide: hide.filter((name) => !labels.some((label) => name.endsWith(label))),
                    paths: paths.map(({ x, y }) => [x, y]) };
     if (said.circle) said.circle = [said.circle.x, said.circle.y, said.circle.radius];
+    if (said.band) said.band = [said.band.table, said.band.within];
     const lines = Object.entries(said).filter(([, value]) => value && Object.keys(value).length !== 0);
     return ["report:", ...lines.map(([key, value]) => `  ${key}: ${JSON.stringify(value).replaceAll('":', '": ')}`)].join("\n");
   }

@@ -1,3 +1,4 @@
+import { farthest } from "#page/band";
 import { deviation, Deviations, figures, findCircle, isNear, nominal } from "#page/circle";
 import { afterwards, colour, dashes, element, nextFrame, palette, stroke } from "#page/dom";
 import { number, withUnit } from "#page/format";
@@ -26,10 +27,10 @@ function ticks(from, to, count) {
   return result;
 }
 
-/** Paths of positions in the plane, equal axes, beside a circle and with the deviation magnified. */
+/** Paths of positions in the plane, equal axes, beside a circle and with the deviation magnified, or in a band. */
 export class Path {
   /** Of the runs that have both signals of `pair`. */
-  constructor(parent, pair, view, arrangement, { circle: given, while: condition }) {
+  constructor(parent, pair, view, arrangement, { circle: given, band, while: condition }) {
     this.view = view;
     this.pair = pair;
     this.arrangement = arrangement;
@@ -41,7 +42,8 @@ export class Path {
     [this.unit, this.unitY] = this.tracks[0].units;
     this.isPlane = this.unit === this.unitY && this.unit !== "" && pair.x !== pair.y;
     this.#choosePoints();
-    this.circle = this.isPlane && given ? { ...given } : this.isPlane ? this.#guess() : null;
+    this.circle = this.isPlane && given ? { ...given } : this.isPlane && !band ? this.#guess() : null;
+    this.band = this.isPlane && !this.circle ? band : null;
     for (const track of this.circle ? this.tracks : [])
       track.deviations = new Deviations(this.circle, track);
     this.magnify = this.circle ? magnification(this.circle, this.tracks, view) : 1;
@@ -129,6 +131,7 @@ export class Path {
   }
 
   #write() {
+    if (this.band) this.#writeDistances();
     if (!this.circle) return;
     const rows = this.#shown.map((track) => {
       const { run } = track;
@@ -137,10 +140,29 @@ export class Path {
       const at = `${number(+f.worst.x.toPrecision(4))}, ${number(+f.worst.y.toPrecision(4))}`;
       return [run.label, ...[f.mean, f.worst.value, f.offset].map((v) => number(+v.toPrecision(4))), at];
     });
-    const heads = ["in view", ...["mean |δ|", "greatest δ", "centre offset", "greatest at"].map((head) => withUnit(head, `[${this.unit}]`))];
+    this.#tabulate(["mean |δ|", "greatest δ", "centre offset", "greatest at"], rows);
+  }
+
+  /** How far each run is from the middle of the band at most, among the points that are drawn. */
+  #writeDistances() {
+    this.#tabulate(["farthest from the points", "farthest at"], this.#shown.map(({ run, points }) => {
+      const worst = farthest(this.#line, points);
+      if (!worst) return [run.label, "–", "–"];
+      return [run.label, number(+worst.away.toPrecision(4)), `${number(+worst.x.toPrecision(4))}, ${number(+worst.y.toPrecision(4))}`];
+    }));
+  }
+
+  #tabulate(names, rows) {
+    const heads = ["in view", ...names.map((name) => withUnit(name, `[${this.unit}]`))];
     const lines = rows.map((cells) => element("tr", {}, ...cells.map((cell) => element("td", {}, cell))));
     this.figures.replaceChildren(element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", {}, head)))),
                                  element("tbody", {}, ...lines));
+  }
+
+  /** The middle of the band: from where the first run begins, through the points of the table. */
+  get #line() {
+    const [{ x, y }] = this.tracks;
+    return [[x.at(0), y.at(0)], ...this.band.points];
   }
 
   /** Tracks of the runs that are drawn. */
@@ -215,6 +237,7 @@ export class Path {
     ctx.beginPath();
     ctx.rect(map.left, map.top, map.width, map.height);
     ctx.clip();
+    if (this.band) this.#drawBand(ctx, map);
     if (this.circle) this.#drawCircle(ctx, map);
     tracks.forEach((points, index) => this.#drawTrack(ctx, map, points, shown[index].run));
     this.#drawCursors(ctx, map);
@@ -262,6 +285,18 @@ export class Path {
     ctx.rotate(-Math.PI / 2);
     ctx.textAlign = "center";
     ctx.fillText(withUnit(this.pair.y, this.unitY && `[${this.unitY}]`), 0, 0);
+    ctx.restore();
+  }
+
+  #drawBand(ctx, map) {
+    ctx.save();
+    ctx.beginPath();
+    for (const [x, y] of this.#line) ctx.lineTo(map.x(x), map.y(y));
+    ctx.strokeStyle = colour("muted");
+    ctx.lineJoin = ctx.lineCap = "round";
+    ctx.globalAlpha = 0.25;
+    ctx.lineWidth = Math.max(2 * this.band.within * map.scale, 1);
+    ctx.stroke();
     ctx.restore();
   }
 
