@@ -313,6 +313,13 @@ def check_apax():
     write("package.yaml", "lineshaft: 1\ntitle: t\nsources: [package/apax.yml]\ntasks: {main: {every: 10 ms}}\n"
           "blocks: {c: {type: Counter, task: main}}\nrun: {for: 100 ms}\nexpect:\n  - {at: end, c.n: 11}\n")
     run("run", "package.yaml", "--quiet")
+    write("package/src/config.st", "CONFIGURATION C\nVAR_GLOBAL CONSTANT MOST : DINT := 7; END_VAR\nEND_CONFIGURATION\n")
+    write("package/src/limits.st", "NAMESPACE N\nCLASS Limits\nMETHOD PUBLIC Top : DINT\nVAR_EXTERNAL CONSTANT MOST : DINT; END_VAR\n"
+          "Top := MOST;\nEND_METHOD\nEND_CLASS\nEND_NAMESPACE\n")
+    write("package/test/limits.st", "USING AxUnit.Assert;\nUSING N;\n{TestFixture}\nCLASS T\nVAR PROTECTED limits : Limits; END_VAR\n"
+          "{Test}\nMETHOD PUBLIC Reads\nVAR_EXTERNAL CONSTANT MOST : DINT; END_VAR\n"
+          "Equal(expected := MOST, actual := limits.Top());\nEND_METHOD\nEND_CLASS\n")
+    assert "1 of 1 passed" in run("test", "package")
 
 
 def twincat(folder, kind, name, declaration, body="", members=""):

@@ -113,6 +113,11 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         entry.own.insert(lower(variable.name.text));
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations) {
+            if (block.section == Section::external) {
+                entry.own.erase(lower(variable->name.text));
+                entry.used.insert(lower(variable->name.text));
+                continue;
+            }
             const std::string name = lower(fmt::format("{}.{}", block.list, variable->name.text));
             entry.types.emplace(name, name);
             if (const auto point = block.list.find('.'); point != block.list.npos)
