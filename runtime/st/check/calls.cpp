@@ -55,7 +55,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     std::vector<Variable*> variables = all_variables(routine);
     const auto is_given = [](const Variable* v) { return v->section != Section::output; };
     const bool outputs_last = routine.pou->name.place.dialect().is_loose;
-    if (outputs_last) std::ranges::stable_partition(variables, is_given);
+    if (outputs_last) std::stable_partition(variables.begin(), variables.end(), is_given);
     for (Variable* variable : variables) {
         if (!variable->is_parameter() && !inner) continue;
         if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
