@@ -354,25 +354,30 @@ def check_solution():
     twincat(lib, "GVL", "Sizes", "{attribute 'qualified_only'}\nVAR_GLOBAL CONSTANT\n step : INT := 2;\nEND_VAR")
     twincat(lib, "GVL", "Far", "VAR_GLOBAL\n far : INT := 1;\nEND_VAR")
     plcproj(f"{lib}/Lib.plcproj", "Ramps", ["Ramp.TcPOU", "MAIN.TcPOU", "Sizes.TcGVL", "Far.TcGVL"])
-    twincat(app, "POU", "MAIN", "PROGRAM MAIN\nVAR a : Ramp; b : R.Ramp; sum : INT; suite : Suite; END_VAR",
-            "a(); b(); sum := a.n + b.n + Sizes.step + R.Sizes.step; TcUnit.RUN();")
+    twincat(app, "POU", "MAIN", "PROGRAM MAIN\nVAR a : Ramp; b : R.Ramp; sum : INT; suite : Suite; alarms : Alarms; dry : UDINT; END_VAR",
+            "a(); b(); sum := a.n + b.n + Sizes.step + R.Sizes.step; alarms(); dry := alarms.n; TcUnit.RUN();")
     twincat(app, "POU", "Faster", "FUNCTION_BLOCK Faster EXTENDS Elsewhere.Ramp;\nVAR m : INT;; END_VAR", "SUPER^();")
     twincat(app, "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR r : Ramp; END_VAR",
             "TEST('counts'); r(); AssertEquals_INT(3, r.n, 'ramp'); TEST_FINISHED();")
+    twincat(app, "POU", "Alarms", "FUNCTION_BLOCK Alarms\nVAR alarm : FB_TcAlarm; n : UDINT; END_VAR",
+            "alarm.CreateEx(TC_EVENTS.Pumps.Dry, TRUE, 0); n := alarm.nEventId;")
+    write(f"{app}/Pumps.tmc", '<?xml version="1.0"?>\n<TcModuleClass><DataTypes><DataType>'
+          '<Name GUID="{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}">Pumps</Name><EventId><Name Id="#x1D">Dry</Name><Severity>Error</Severity></EventId>'
+          '<EventId><Name Id="x">Odd</Name></EventId></DataType></DataTypes></TcModuleClass>\n')
     write(f"{app}/PlcTask.TcTTO", TASK)
-    plcproj(f"{app}/App.plcproj", "App", ["MAIN.TcPOU", "Suite.TcPOU", "Faster.TcPOU", "PlcTask.TcTTO"], [("Ramps", "R"), ("TcUnit", "TcUnit")])
+    plcproj(f"{app}/App.plcproj", "App", ["Alarms.TcPOU", "MAIN.TcPOU", "Suite.TcPOU", "Faster.TcPOU", "PlcTask.TcTTO"], [("Ramps", "R"), ("TcUnit", "TcUnit")])
     write("sln/app/App.tsproj", '<?xml version="1.0"?>\n<TcSmProject><Project><Plc><Project File="App.xti"/></Plc></Project></TcSmProject>\n')
     write("sln/app/_Config/PLC/App.xti", '<?xml version="1.0"?>\n<TcSmItem><Project PrjFilePath="..\\..\\App\\App.plcproj"/></TcSmItem>\n')
     write("sln/app/App.sln", 'Project("{B1}") = "App", "App.tsproj", "{09}"\r\nEndProject\r\n')
     assert "ok  sln\n" in run("check", "sln")
     assert "ok  sln/app/App.sln\n" in run("check", "sln/app/App.sln", "--include-dir", "sln/lib")
     alone = run("check", "sln/app/App.sln", code=2)
-    assert "0 of 3 POUs" in alone, alone
+    assert "3 of 7 POUs" in alone, alone
     assert "libraries that are not here: Ramps" in alone, alone
     run("new", "both", "--from", "sln")
     text = (work / "both.yaml").read_text()
     assert 'sources: ["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]' in text, text
-    write("both.yaml", text + "expect:\n  - {at: end, MAIN.sum: 610}\n")
+    write("both.yaml", text + "expect:\n  - {at: end, MAIN.sum: 610}\n  - {at: end, MAIN.dry: 29}\n")
     run("run", "both.yaml", "--quiet")
     listed = '["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]'
     write("turned.yaml", text.replace(listed, '["sln/lib/Lib/Lib.plcproj", "sln/app/App/App.plcproj"]'))

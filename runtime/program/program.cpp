@@ -283,10 +283,10 @@ std::string ProgramReader::namespace_of(const std::string& path) {
 void ProgramReader::read_source_file(const std::string& path, const Mark& mark) {
     Diagnostics& out = read_.diagnostics();
     const std::size_t before = out.count();
-    const auto resolve = [&](const std::string& named, const Mark& where) {
+    const auto resolve = [&](const std::string& named, const Mark& where, Diagnostics& to) {
         const fs::path own = fs::path(program_.file->path).parent_path();
         return resolve_path(fs::path(named).lexically_proximate(own).string(), program_.file->path,
-                            options_.include_dirs, where, out);
+                            options_.include_dirs, where, to);
     };
     const auto read = [&] {
         projects::Project project;
@@ -338,9 +338,9 @@ projects::Project read_project(const std::string& path,
     if (error) files = {path};
     for (const std::string& file : files) {
         const fs::path own = fs::path(file).parent_path();
-        const auto resolve = [&](const std::string& named, const Mark& where) {
+        const auto resolve = [&](const std::string& named, const Mark& where, Diagnostics& to) {
             return resolve_path(fs::path(named).lexically_proximate(own).string(), file, allowed,
-                                where, out);
+                                where, to);
         };
         projects::read_sources({project, out, resolve}, file);
     }

@@ -67,10 +67,11 @@ class IecProgram {
         const std::string ending = lower(fs::path(named).extension().string());
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named);
-            if (const auto path = to_.resolve(path_of(named), mark)) read_sources(to_, *path, mark);
+            if (const auto path = to_.resolve(path_of(named), mark, to_.out))
+                read_sources(to_, *path, mark);
             return;
         }
-        const auto path = to_.resolve(path_of(named), mark);
+        const auto path = to_.resolve(path_of(named), mark, to_.out);
         auto source = path ? read_source(*path, to_.out, mark) : nullptr;
         if (!source) return;
         const PlacedFile text(source);

@@ -63,7 +63,7 @@ void read_apax(const Reading& to, const std::string& path, const Mark& where) {
                    fmt::format("cannot read the folder '{}': {}", folder, error.message()),
                    "a package of SIMATIC AX has its sources there");
     for (const std::string& file : files)
-        if (const auto allowed = to.resolve(file, where)) read_sources(to, *allowed, where);
+        if (const auto allowed = to.resolve(file, where, to.out)) read_sources(to, *allowed, where);
 }
 
 bool is_apax(const fs::path& file) {

@@ -38,8 +38,8 @@ struct Project {
 };
 
 /// The path of a file that a project names, or empty and told why.
-using Resolve =
-    std::function<std::optional<std::string>(const std::string& path, const Mark& where)>;
+using Resolve = std::function<std::optional<std::string>(const std::string& path, const Mark& where,
+                                                         Diagnostics& out)>;
 
 /// What reads files of projects takes along.
 struct Reading {

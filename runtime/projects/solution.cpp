@@ -123,7 +123,8 @@ std::vector<std::string> plcprojs_of(const std::string& solution) {
 
 void read_solution(const Reading& to, const std::string& path, const Mark& where) {
     for (const std::string& named : plcprojs_of(path))
-        if (const auto allowed = to.resolve(named, where)) read_plcproj(to, *allowed, where);
+        if (const auto allowed = to.resolve(named, where, to.out))
+            read_plcproj(to, *allowed, where);
 }
 
 std::shared_ptr<const SourceFile> in_namespace(const std::shared_ptr<const SourceFile>& source,

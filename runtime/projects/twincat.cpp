@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/box_trees.hpp"
+#include "runtime/projects/event_classes.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
@@ -269,8 +270,10 @@ void read_plcproj(const Reading& to, const std::string& path, const Mark& where)
             if (kind != "Compile") continue;
             const std::string named = path_beside(path, unescaped(file->plain(include)));
             if (!is_source(named) || is_same_form(named, path)) continue;
-            if (const auto allowed = to.resolve(named, mark)) read_sources(to, *allowed, mark);
+            if (const auto allowed = to.resolve(named, mark, to.out))
+                read_sources(to, *allowed, mark);
         }
+    read_event_classes(to, path, where);
 }
 
 }  // namespace lineshaft::projects

@@ -54,6 +54,7 @@ const Dialect& dialect_of(std::string_view path) {
                                          {".tcgvl", codesys},
                                          {".tcio", codesys},
                                          {".tctleo", codesys},
+                                         {".plcproj", codesys},
                                          {".xml", codesys}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
