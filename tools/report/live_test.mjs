@@ -161,6 +161,13 @@ async function testWriting(newPage, port) {
   await writer.end();
 }
 
+/** Where neither cursor stands, which would be dragged in place of the plot; they move as time goes on. */
+async function freePlace(page, box) {
+  const cursors = await Promise.all([".cursor-A", ".cursor-B"].map((each) => page.locator(each).first().boundingBox()));
+  const places = [0.2, 0.5, 0.8].map((share) => box.x + box.width * share);
+  return places.find((place) => cursors.every((cursor) => !cursor || Math.abs(cursor.x - place) > 0.1 * box.width));
+}
+
 async function testTrigger(newPage, port) {
   const machine = await serve(port);
   const page = await open(newPage, port);
@@ -190,9 +197,10 @@ async function testTrigger(newPage, port) {
   await page.click("#hold");
   await eventually(page, (before) => globalThis.drawings > before + 5, drawn);
   const box = await over.boundingBox();
-  await page.mouse.move(box.x + box.width * 0.3, box.y + 80);
+  const from = await freePlace(page, box);
+  await page.mouse.move(from, box.y + 80);
   await page.mouse.down();
-  await page.mouse.move(box.x + box.width * 0.6, box.y + 80, { steps: 5 });
+  await page.mouse.move(from + box.width * 0.15, box.y + 80, { steps: 5 });
   await page.waitForTimeout(50);
   await page.mouse.up();
   await eventually(page, () => document.querySelector("#hold").textContent === "Follow");
