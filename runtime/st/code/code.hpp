@@ -2,8 +2,10 @@
 
 #include <array>
 #include <atomic>
+#include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,13 @@ struct Instruction {
 };
 static_assert(sizeof(Instruction) == 24);
 
+/// A slot of a routine's frame that has a constant of it, and is never written.
+struct ConstantSlot {
+    std::uint32_t slot = 0;
+    std::uint64_t bits = 0;
+    auto operator<=>(const ConstantSlot&) const = default;
+};
+
 struct CodeRoutine {
     std::string name;
     std::uint32_t entry = 0, end = 0;  ///< instructions
@@ -33,6 +42,7 @@ struct CodeRoutine {
     std::uint32_t depth = 0;   ///< levels of calls below it, but for those found by instances
     std::uint32_t levels = 0;  ///< that an instance which runs it has room for
     std::uint32_t mark = 0;    ///< slot that says that it runs; 0: it has none
+    std::vector<ConstantSlot> constants = {};  ///< by their slots
 };
 
 /// The method of a kind of instance that a call finds.
@@ -97,7 +107,10 @@ struct Code {
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     mutable Witness* witness = nullptr;    ///< of tests; without one an assertion ends what runs
-    std::shared_ptr<const Native> native;  ///< null: the machine interprets it
+    /// Of an instruction of each class [ns], where what is executed is counted.
+    std::optional<InstructionTimes> times;
+    /// Null: the machine interprets it. What is counted has none.
+    std::shared_ptr<const Native> native;
     mutable Probe* probe = nullptr;        ///< a debugger's that looks at scans
 
     std::uint32_t left_slot() const { return globals_slot + globals; }

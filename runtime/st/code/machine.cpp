@@ -189,12 +189,12 @@ Fault run_whole(Frames& frames, const CodeRoutine& routine) {
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.
-[[gnu::noinline]] Fault run_otherwise(Frames& frames, const CodeRoutine& routine,
-                                      const std::int64_t* times) {
+[[gnu::noinline]] Fault run_otherwise(Frames& frames, const CodeRoutine& routine) {
+    const auto& times = frames.code.times;
     Probe* const probe = frames.code.probe;
     std::byte* const instance = frames.root;
     const bool steps = probe && probe->steps(routine, frames.now);
-    if (frames.code.native && !times && !steps) return run_native(frames, routine);
+    if (frames.code.native && !steps) return run_native(frames, routine);
     if (!times && !steps) return run_whole<false, false>(frames, routine);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
@@ -202,7 +202,7 @@ Fault run_whole(Frames& frames, const CodeRoutine& routine) {
         steps ? run_whole<true, true>(frames, routine) : run_whole<true, false>(frames, routine);
     if (!times) return fault;
     std::memcpy(instance + 8 * counts_slot, counted, 8 * op_classes);
-    const Wide taken = std::inner_product(times, times + op_classes, counted, Wide{0});
+    const Wide taken = std::inner_product(times->begin(), times->end(), counted, Wide{0});
     set_word(instance, time_slot, static_cast<std::uint64_t>(std::min<Wide>(taken, never)));
     return fault;
 }
@@ -215,11 +215,11 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
 }
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
-              const Context& context, std::int64_t fuel, const std::int64_t* times) {
+              const Context& context, std::int64_t fuel) {
     std::byte* const calls = instance + 8 * std::size_t{code.calls_slot()};
     Frames frames{code, now, context, fuel, instance, routine.levels, calls};
-    if (code.native && !times && !code.probe) return run_native(frames, routine);
-    return run_otherwise(frames, routine, times);
+    if (code.native && !code.probe) return run_native(frames, routine);
+    return run_otherwise(frames, routine);
 }
 
 }  // namespace lineshaft::st

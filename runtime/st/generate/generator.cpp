@@ -53,6 +53,9 @@ void finish(Writing& w, Routine& routine) {
     w.image->insert(w.image->end(), w.constants.begin(), w.constants.end());
     CodeRoutine& code = w.code.routines.back();
     code.end = w.next();
+    for (const auto& [bits, slot] : w.constant_slots)
+        code.constants.push_back({constants + (slot & ~region_mask), bits});
+    std::ranges::sort(code.constants);
     if (is_function) {
         Instruction& first = w.code.instructions[code.entry];
         first.c = temporaries - first.a;

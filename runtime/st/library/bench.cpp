@@ -72,7 +72,7 @@ TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
     for (std::uint64_t i = 0; i < places_.size(); ++i)
         std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
     code.witness = this;
-    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel, nullptr);
+    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel);
     code.witness = nullptr;
     if (fault == Fault::none) return {};
     if (fault == Fault::assertion) return std::move(ended_);

@@ -73,7 +73,8 @@ bool compile(Compiled& to, const Catalog& standard, Diagnostics& out, CodeOption
 }
 
 void make_native(Code& code, const Options& options) {
-    if (options.native && !options.times) code.native = native_code(code);
+    code.times = options.times;
+    if (options.native && !code.times) code.native = native_code(code);
 }
 
 FaultPlace fault_of(const Code& code, const std::byte* instance) {

@@ -40,7 +40,7 @@ Evaluated evaluate(Expression& expression) {
     std::vector<std::uint64_t>& image = made.images.at(&block);
     Scan scan;
     const Fault fault = execute(made.code, made.code.routines.front(),
-                                reinterpret_cast<std::byte*>(image.data()), scan, {}, 1, nullptr);
+                                reinterpret_cast<std::byte*>(image.data()), scan, {}, 1);
     if (fault != Fault::none) return {fault};
     return {fault, constant_of(*expression.type, &image[result.slot])};
 }

@@ -35,30 +35,43 @@ bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
     return true;
 }
 
-bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
-              const Context& context) {
-    if (kind.run_test) {
-        kind.failure = kind.run_test(instance, context);
-        if (!kind.failure.empty()) refuse(kind, instance, Fault::assertion);
-        return !kind.failure.empty();
-    }
+[[gnu::noinline]] bool run_test(const KindContext& kind, std::byte* instance, const Context& context) {
+    kind.failure = kind.run_test(instance, context);
+    return !kind.failure.empty() && refuse(kind, instance, Fault::assertion);
+}
+
+/// Whether what the instance was given is nothing that it may be scanned with.
+[[gnu::noinline]] bool is_refused(const KindContext& kind, std::byte* instance) {
     for (const std::uint32_t slot : kind.references)
         if (read<std::uint64_t>(instance + 8 * std::size_t{slot}) == 0)
             return refuse(kind, instance, Fault::no_reference);
     for (const KindContext::Check& check : kind.checks)
         if (!is_in_range(check, instance)) return refuse(kind, instance, Fault::out_of_range);
+    return false;
+}
+
+bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
+              const Context& context) {
+    if (kind.run_test) return run_test(kind, instance, context);
+    const bool is_looked_at = !kind.references.empty() || !kind.checks.empty();
+    if (is_looked_at && is_refused(kind, instance)) return true;
     Scan moment = now;
-    const auto& times = kind.options.times;
-    return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel,
-                   times ? times->data() : nullptr) != Fault::none;
+    return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel) !=
+           Fault::none;
+}
+
+[[gnu::noinline]] bool scan_all(const KindContext& kind, std::byte* first, std::size_t count,
+                                const Scan& now, const Context& context) {
+    bool error = false;
+    for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
+    return error;
 }
 
 bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
     const auto& kind = *static_cast<const KindContext*>(context.kind);
     if (!kind.routine) return false;
-    bool error = false;
-    for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
-    return error;
+    if (count == 1) return scan_one(kind, first, now, context);
+    return scan_all(kind, first, count, now, context);
 }
 
 std::string why(const std::byte* block, const Context& context, const NameOf&) {

@@ -91,9 +91,14 @@ class Writer {
         add("static Left routine_{}(STATE) {{ std::uint64_t behind;\n", number);
         for (std::uint32_t i = routine.entry; i < routine.end; ++i) {
             const Instruction& in = code_.instructions[i];
-            const bool jumps = info(in.op).operands[2] == 'j';
-            add("OP_{}({},{}u,{}u,{}u,{}u,", info(in.op).name, i, in.a, in.b,
-                jumps ? 0 : static_cast<std::uint32_t>(in.c), in.d);
+            const std::string_view operands = info(in.op).operands;
+            const bool jumps = operands[2] == 'j';
+            add("OP_{}({}", info(in.op).name, i);
+            add_operand(routine, operands[0], in.a);
+            add_operand(routine, operands[1], in.b);
+            add_operand(routine, operands[2], jumps ? 0 : static_cast<std::uint32_t>(in.c));
+            add_operand(routine, operands[3], in.d);
+            add(",");
             if (jumps)
                 add("at_{})\n", code_.place_of(in.c));
             else if (in.op == Op::choose)
@@ -102,6 +107,15 @@ class Writer {
                 add("{:#x}u)\n", in.c);
         }
         add("}}\nSCAN({})\n", number);
+    }
+
+    void add_operand(const CodeRoutine& routine, char kind, std::uint32_t operand) {
+        const auto found =
+            std::ranges::lower_bound(routine.constants, operand, {}, &ConstantSlot::slot);
+        if (kind == 'r' && found != routine.constants.end() && found->slot == operand)
+            add(",(Known{{{}u,{:#x}u}})", operand, found->bits);
+        else
+            add(",{}u", operand);
     }
 
     void add_ways(const Instruction& in) {
@@ -138,7 +152,10 @@ std::string emission_key(const Code& code) {
             numbers[at] = static_cast<std::int64_t>(code.place_of(address));
         }
     }
-    for (const CodeRoutine& routine : code.routines) add(routine.entry, routine.end);
+    for (const CodeRoutine& routine : code.routines) {
+        add(routine.entry, routine.end, routine.constants.size());
+        for (const ConstantSlot& constant : routine.constants) add(constant.slot, constant.bits);
+    }
     for (const IndexTable& t : code.tables) add(t.lower, t.count, t.stride, t.first);
     for (const std::int64_t number : numbers) add(number);
     for (const std::uint64_t word : code.images) add(word);

@@ -45,6 +45,16 @@ struct Left {
 };
 constexpr Fault goes_on{-1};
 
+/// An operand that is a constant of the routine: the compiler is to know what its slot has.
+struct Known {
+    std::uint32_t slot;
+    std::uint64_t bits;
+    constexpr operator std::uint32_t() const { return slot; }
+};
+constexpr std::uint64_t word(const std::byte*, const Known& constant) {
+    return constant.bits;
+}
+
 #define STATE std::byte *base, Frames &frames, std::int64_t fuel
 #define at(slot) (base + 8 * std::size_t{slot})
 #define U(slot) word(base, slot)
