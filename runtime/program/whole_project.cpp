@@ -132,6 +132,13 @@ std::vector<WholeProject> read_projects(const std::string& path,
     return made;
 }
 
+std::vector<std::string> task_programs(const projects::Project& project) {
+    std::vector<std::string> programs;
+    for (const projects::ProjectTask& task : project.tasks)
+        for (const projects::Name& program : task.programs) programs.push_back(program.text);
+    return programs;
+}
+
 std::vector<LibraryReference> references_of(const projects::Project& project) {
     std::vector<LibraryReference> references;
     for (const projects::Name& library : project.libraries)

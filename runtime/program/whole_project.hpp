@@ -23,6 +23,9 @@ std::vector<WholeProject> read_projects(const std::string& path,
                                         const std::vector<std::string>& include_dirs,
                                         Diagnostics& out);
 
+/// What its tasks run.
+std::vector<std::string> task_programs(const projects::Project& project);
+
 /// The libraries that it refers to and that are not here, for the compiler to name.
 std::vector<LibraryReference> references_of(const projects::Project& project);
 

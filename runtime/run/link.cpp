@@ -10,7 +10,7 @@
 #include "runtime/outside/outside.hpp"
 #include "runtime/scan/expectations.hpp"
 #include "runtime/source/codes.hpp"
-#include "runtime/st/library/library.hpp"
+#include "runtime/st/library/used_sources.hpp"
 #include "runtime/trace/report_setup.hpp"
 #include "runtime/trace/trace_setup.hpp"
 
@@ -36,6 +36,13 @@ st::Options options_of(const Program& program) {
     return options;
 }
 
+/// That its blocks have.
+std::vector<std::string> types_of(const Program& program) {
+    std::vector<std::string> types;
+    for (const BlockPlan& block : program.blocks) types.push_back(block.type.text);
+    return types;
+}
+
 /// What the program's Structured Text brings along; null if there is a mistake in it.
 std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& catalog,
                                         Diagnostics& out) {
@@ -43,7 +50,8 @@ std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& c
     auto kinds = std::make_shared<Catalog>();
     if (program.texts.empty()) return kinds;
     Diagnostics found;
-    const auto library = st::compile(program.texts, catalog, found, options_of(program));
+    const auto library = st::compile_used(program.texts, types_of(program), catalog, found,
+                                          options_of(program));
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};
@@ -88,11 +96,13 @@ void warn_of_unused_inputs(const Program& program, Linked& linked, Diagnostics& 
 std::shared_ptr<const Catalog> CompiledSources::kinds(const Program& program,
                                                       const Catalog& catalog) {
     const st::Options options = options_of(program);
+    const std::vector<std::string> types = types_of(program);
     for (const Entry& entry : entries_)
-        if (entry.texts == program.texts && entry.options == options) return entry.kinds;
+        if (entry.texts == program.texts && entry.types == types && entry.options == options)
+            return entry.kinds;
     Diagnostics untold;
     const auto kinds = kinds_of(program, catalog, untold);
-    if (kinds) entries_.push_back({program.texts, options, kinds});
+    if (kinds) entries_.push_back({program.texts, types, options, kinds});
     return kinds;
 }
 

@@ -25,6 +25,7 @@ class CompiledSources {
   private:
     struct Entry {
         std::vector<std::shared_ptr<const SourceFile>> texts;
+        std::vector<std::string> types;  ///< of the blocks
         st::Options options;
         std::shared_ptr<const Catalog> kinds;
     };

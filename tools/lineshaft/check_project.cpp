@@ -11,7 +11,7 @@
 #include "runtime/program/whole_project.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/source/encoding.hpp"
-#include "runtime/st/library/library.hpp"
+#include "runtime/st/library/used_sources.hpp"
 #include "tools/lineshaft/check_apart.hpp"
 #include "tools/lineshaft/once.hpp"
 
@@ -145,8 +145,8 @@ std::string check_project(const std::string& path, const LoadOptions& options, D
     for (const WholeProject& each : all) {
         Diagnostics found;
         std::set<const SourceFile*> foreign;
-        st::compile(
-            each.project.sources, standard_blocks(), found,
+        st::compile_used(
+            each.project.sources, task_programs(each.project), standard_blocks(), found,
             {.references = references_of(each.project), .addresses = {}, .foreign = &foreign});
         if (each.path == path) found = without_neighbours(each.project.sources, found);
         whole += each.own;

@@ -12,7 +12,7 @@
 #include "runtime/program/whole_project.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
-#include "runtime/st/library/library.hpp"
+#include "runtime/st/library/used_sources.hpp"
 
 namespace lineshaft {
 
@@ -196,8 +196,8 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
     const projects::Project& project = chosen->project;
-    const auto library = out.empty() ? st::compile(project.sources, standard_blocks(), out,
-                                                   {.references = references_of(project)})
+    const auto library = out.empty() ? st::compile_used(project.sources, task_programs(project), standard_blocks(), out,
+                                            {.references = references_of(project)})
                                      : std::optional<st::Library>();
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);

@@ -185,6 +185,22 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
         const bool beside = !subject.empty() && path.parent_path() == folder;
         if (beside && lower(path.stem().string()) == subject) chosen.push_back(&entry);
     }
+    follow(chosen, tests->path);
+    return files_of(chosen);
+}
+
+std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
+    const std::vector<std::string>& names) const {
+    Entry user;
+    user.file = std::make_shared<const SourceFile>();
+    for (const std::string& name : names) user.used.insert(lower(name));
+    std::vector<const Entry*> chosen{&user};
+    follow(chosen, "");
+    return files_of(chosen);
+}
+
+/// Whatever declares a name that one of the chosen uses, and none declares.
+void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to) const {
     const auto is_declared = [&](const std::string& name) {
         return std::ranges::any_of(chosen, [&](const Entry* e) {
             return e->types.contains(name) || e->values.contains(name);
@@ -193,11 +209,15 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
     for (std::size_t i = 0; i < chosen.size(); ++i)
         for (const std::string& name : chosen[i]->used)
             if (!is_declared(name))
-                for (const Entry* found : nearest(name, *chosen[i], tests->path))
+                for (const Entry* found : nearest(name, *chosen[i], to))
                     if (std::ranges::find(chosen, found) == chosen.end()) chosen.push_back(found);
+}
+
+/// Of all but the first, which is who asks.
+std::vector<std::shared_ptr<const SourceFile>> SourcePool::files_of(
+    const std::vector<const Entry*>& chosen) {
     std::vector<std::shared_ptr<const SourceFile>> files;
-    for (const Entry* entry : chosen)
-        if (entry != &test) files.push_back(entry->file);
+    for (std::size_t i = 1; i < chosen.size(); ++i) files.push_back(chosen[i]->file);
     return files;
 }
 

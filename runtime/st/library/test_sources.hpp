@@ -28,6 +28,9 @@ class SourcePool {
     /// may hold whatever they like, and two that declare the same do not meet.
     std::vector<std::shared_ptr<const SourceFile>> needed_by(
         const std::shared_ptr<const SourceFile>& tests) const;
+    /// Every file that declares one of the names, or one which a file found so far uses.
+    std::vector<std::shared_ptr<const SourceFile>> needed_by(
+        const std::vector<std::string>& names) const;
 
   private:
     /// Names in small letters.
@@ -41,6 +44,9 @@ class SourcePool {
         std::set<std::string> used;
     };
     static Entry entry_of(const std::shared_ptr<const SourceFile>& file);
+    void follow(std::vector<const Entry*>& chosen, const std::string& to) const;
+    static std::vector<std::shared_ptr<const SourceFile>> files_of(
+        const std::vector<const Entry*>& chosen);
     std::vector<const Entry*> nearest(const std::string& name, const Entry& user,
                                       const std::string& to) const;
 
