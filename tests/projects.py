@@ -413,6 +413,32 @@ def check_named_programs():
     run("run", "named.yaml", "--quiet", "--no-native")
 
 
+def check_left_over():
+    """Mistakes in what no task uses are warnings, and the rest runs; axes that blocks keep for themselves are blocks of the program."""
+    twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR station : Station; END_VAR", "station(); GVL.spare();")
+    twincat("rest", "POU", "Station", "FUNCTION_BLOCK Station\nVAR feeds : ARRAY[1..2] OF Feed; END_VAR", "feeds[1](go := TRUE); feeds[2]();")
+    twincat("rest", "POU", "Feed", "FUNCTION_BLOCK Feed\nVAR_INPUT go : BOOL; END_VAR\nVAR_OUTPUT axis : AXIS_REF; END_VAR\n"
+            "VAR power : MC_Power; move : MC_MoveAbsolute; top : MC_ReadParameter; END_VAR",
+            "power(Axis := axis, Enable := TRUE, Enable_Positive := TRUE, Enable_Negative := TRUE);"
+            "move(Axis := axis, Execute := go AND power.Status, Position := 5.0, Velocity := 50.0);"
+            "top(Axis := axis, Enable := TRUE, ParameterNumber := MC_AxisParameter.CommandedPosition, ReadMode := READMODE_CYCLIC);")
+    twincat("rest", "POU", "Station_OLD", "FUNCTION_BLOCK Station_OLD\nVAR feed : Feed; END_VAR", "feed.gone := TRUE; missing();")
+    twincat("rest", "GVL", "GVL", "VAR_GLOBAL\n spare : Feed;\nEND_VAR")
+    write("rest/PlcTask.TcTTO", TASK)
+    files = ["MAIN.TcPOU", "Station.TcPOU", "Feed.TcPOU", "Station_OLD.TcPOU", "GVL.TcGVL", "PlcTask.TcTTO"]
+    plcproj("rest/Rest.plcproj", "Rest", files, [("Tc9_Strange", "Tc9_Strange")])
+    said = run("check", "rest")
+    assert "ok  rest\n" in said and "Station_OLD.TcPOU" in said and "in what nothing here uses" in said, said
+    run("new", "rest", "--from", "rest")
+    text = (work / "rest.yaml").read_text()
+    assert '"station.feeds[1].axis": MAIN_station_feeds_1__axis' in text and "spare.axis: globals_spare_axis" in text, text
+    write("rest.yaml", text + "expect:\n  - {at: end, MAIN_station_feeds_1__axis.position: 5 mm, within: 1e-9 mm}\n"
+          "  - {at: end, MAIN_station_feeds_2__axis.position: 0 mm}\n  - {at: end, 'MAIN.station.feeds[1].top.Value': 5}\n")
+    run("run", "rest.yaml", "--quiet")
+    twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR station : Station; old : Station_OLD; END_VAR", "station(); old();")
+    assert "has no 'gone'" in run("check", "rest", code=2)
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -484,6 +510,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_apax()
     check_solution()
     check_named_programs()
+    check_left_over()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

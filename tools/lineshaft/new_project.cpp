@@ -23,6 +23,7 @@ constexpr std::size_t most_signals = 8;
 /// A block that is one of the program's, and the task that scans it.
 struct NewBlock {
     std::string name, type, task;
+    std::vector<std::pair<std::string, std::string>> axes = {};  ///< that are given to it, by path
 };
 
 struct NewTask {
@@ -103,6 +104,35 @@ std::vector<NewBlock> named_blocks(const st::Library& library,
     return blocks;
 }
 
+/// A block for each axis that a program or a list of globals keeps for itself, as TwinCAT links
+/// them to axes of its numerical control.
+std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>& owners) {
+    std::vector<NewBlock> axes;
+    for (NewBlock& owner : owners) {
+        const auto kind = std::ranges::find(library.kinds(), owner.type, &BlockType::name);
+        for (const Field& field : kind->fields) {
+            const bool is_axis = field.refers == "axis" && field.global.empty() && !field.required;
+            if (!is_axis) continue;
+            std::string name = plain_name(fmt::format("{}_{}", owner.name, field.name));
+            if (name.ends_with('_')) name.pop_back();
+            owner.axes.emplace_back(field.name, name);
+            axes.push_back({name, "axis", owner.task});
+        }
+    }
+    return axes;
+}
+
+/// Lists of globals that keep axes, in the first task.
+std::vector<NewBlock> lists_with_axes(const st::Library& library, const std::string& task) {
+    std::vector<NewBlock> lists;
+    for (const BlockType& kind : library.kinds())
+        if (kind.single) lists.push_back({std::string(kind.name), std::string(kind.name), task});
+    axes_of(library, lists);
+    std::erase_if(lists, [](const NewBlock& list) { return list.axes.empty(); });
+    for (NewBlock& list : lists) list.axes.clear();
+    return lists;
+}
+
 /// What is plainly named, outputs before all others.
 std::vector<std::string> signals_of(const st::Library& library, const NewBlock& block) {
     std::vector<std::string> signals;
@@ -127,8 +157,14 @@ std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBloc
         text += fmt::format("  {}: {{every: {}, priority: {}}}\n", task.name, time_text(task.every),
                             task.priority);
     text += "blocks:\n";
-    for (const NewBlock& block : blocks)
-        text += fmt::format("  {}: {{type: {}, task: {}}}\n", block.name, block.type, block.task);
+    for (const NewBlock& block : blocks) {
+        text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
+        for (const auto& [path, axis] : block.axes) {
+            const std::string_view mark = path.find('[') == path.npos ? "" : "\"";
+            text += fmt::format(", {0}{1}{0}: {2}", mark, path, axis);
+        }
+        text += "}\n";
+    }
     return text;
 }
 
@@ -201,7 +237,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
                                      : std::optional<st::Library>();
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);
-    const std::vector<NewBlock> programs = programs_of(*library, tasks);
+    std::vector<NewBlock> programs = programs_of(*library, tasks);
     if (programs.empty()) {
         out.add(code::entry_is_missing, {},
                 fmt::format("'{}' has no PROGRAM that a task could run", path),
@@ -209,7 +245,10 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         return {};
     }
     std::vector<NewBlock> blocks = named_blocks(*library, programs);
-    blocks.insert(blocks.end(), programs.begin(), programs.end());
+    std::vector<NewBlock> owners = lists_with_axes(*library, tasks.front().name);
+    owners.insert(owners.end(), programs.begin(), programs.end());
+    std::ranges::move(axes_of(*library, owners), std::back_inserter(blocks));
+    std::ranges::move(owners, std::back_inserter(blocks));
     const std::string name = file.stem().string();
     std::string text = fmt::format(
         "# Around a project of another tool. Try, and then change:\n"

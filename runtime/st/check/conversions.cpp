@@ -75,7 +75,9 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         if (fits) convert(c, e, to);
         return fits;
     }
-    if (from.has_numbers && to.has_numbers && from.name != to.name && e->place.dialect().is_loose) {
+    const bool is_other = from.has_numbers && from.name != to.name;
+    const bool has_number = is_other || from.kind == Kind::bits;
+    if (has_number && to.has_numbers && e->place.dialect().is_loose) {
         Expression* number = e;
         convert(c, number, lint_type);
         if (!coerce_enumeration(c, number, to)) return false;

@@ -144,7 +144,8 @@ void become_named_values(Type& type, const Type& base) {
 const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     const bool has_base = text.name.word != Word::end_of_file;
     const Type* base = has_base ? resolve_name(c, text.name) : &int_type;
-    if (!base || base->kind == Kind::block) return base;
+    const bool has_none = text.values.empty() && base && base->is_instance();  // `edge : R_TRIG()`
+    if (!base || base->kind == Kind::block || has_none) return base;
     if (base->kind != Kind::integer && base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");

@@ -199,15 +199,20 @@ Fault write_run(const Code& code, const Bytes& to, const Run& run, std::uint64_t
     return Fault::none;
 }
 
-/// Calls `act(first, count)` of each run of `of`, from the last one on if it is to be so.
-template <class Do>
+/// Calls `as_one(run, first, count)` of each run of `of`, from the last one on if it is to be so;
+/// where that is false `act`, of `longest_run` bytes at most.
+template <class AsOne, class Do>
 Fault visit_runs(const Code& code, const Bytes& of, std::uint64_t count, bool backwards,
-                 const Do& act) {
+                 const AsOne& as_one, const Do& act) {
     if (!is_inside(code, of, count)) return Fault::outside_of_variable;
     std::uint64_t first = static_cast<std::uint64_t>(of.first), end = first + count;
     while (first < end) {
         const Run run = run_at(code, of, backwards ? end - 1 : first);
         std::uint64_t from = std::max(run.first, first), to = std::min(run.end, end);
+        if (as_one(run, from, to - from)) {
+            (backwards ? end : first) = backwards ? from : to;
+            continue;
+        }
         if (backwards)
             from = std::max(from, to - std::min(to, longest_run));
         else
@@ -218,16 +223,20 @@ Fault visit_runs(const Code& code, const Bytes& of, std::uint64_t count, bool ba
     return Fault::none;
 }
 
-/// A value of the same shape, whole: also references are copied then.
-bool copy_whole(const Code& code, const Run& run, std::uint64_t first, std::uint64_t count,
-                const Bytes& from, std::uint64_t from_byte) {
-    if (!run.leaf || run.first != first || run.end - run.first != count) return false;
-    const auto source = leaf_at(code, from, 8 * from_byte);
-    if (!source || source->bit != 8 * from_byte || source->number != run.leaf->number ||
-        is_bit(code.shapes[source->number]))
-        return false;
-    std::memmove(run.leaf->slots, source->slots, 8 * code.shapes[source->number].slots);
-    return true;
+bool is_nothing(const Run&, std::uint64_t, std::uint64_t) {
+    return false;
+}
+
+/// Where all of the run is a value that begins in the other variable, too, as the same shape: its
+/// slots there. Of values that are seen by no bytes this is all there is.
+const std::byte* same_value(const Code& code, const Run& run, std::uint64_t first,
+                            std::uint64_t count, const Bytes& other, std::uint64_t byte) {
+    if (!run.leaf || run.first != first || run.end - run.first != count) return nullptr;
+    const auto found = leaf_at(code, other, 8 * byte);
+    if (!found || found->bit != 8 * byte || found->number != run.leaf->number ||
+        is_bit(code.shapes[found->number]))
+        return nullptr;
+    return found->slots;
 }
 
 Bytes behind(Bytes of, std::uint64_t bits) {
@@ -245,7 +254,7 @@ bool is_inside(const Code& code, const Bytes& bytes, std::uint64_t count) {
 
 Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::byte* to) {
     const auto first = static_cast<std::uint64_t>(from.first);
-    return visit_runs(code, from, count, false,
+    return visit_runs(code, from, count, false, is_nothing,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
                           return read_run(code, from, run, at, bytes, to + (at - first));
                       });
@@ -253,7 +262,7 @@ Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::
 
 Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count, const std::byte* from) {
     const auto first = static_cast<std::uint64_t>(to.first);
-    return visit_runs(code, to, count, false,
+    return visit_runs(code, to, count, false, is_nothing,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
                           return write_run(code, to, run, at, bytes, from + (at - first));
                       });
@@ -263,9 +272,14 @@ Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint
     if (!is_inside(code, from, count)) return Fault::outside_of_variable;
     const bool backwards = to.slots == from.slots && to.first > from.first;
     const auto distance = static_cast<std::uint64_t>(from.first - to.first);
+    const auto copy = [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+        const std::byte* value = same_value(code, run, at, bytes, from, at + distance);
+        if (value) std::memmove(run.leaf->slots, value, 8 * code.shapes[run.leaf->number].slots);
+        return value != nullptr;
+    };
     return visit_runs(
-        code, to, count, backwards, [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
-            if (copy_whole(code, run, at, bytes, from, at + distance)) return Fault::none;
+        code, to, count, backwards, copy,
+        [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
             std::byte kept[longest_run];
             Bytes source = from;
             source.first = static_cast<std::int64_t>(at + distance);
@@ -277,7 +291,7 @@ Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint
 Fault fill_bytes(const Code& code, const Bytes& to, std::byte value, std::uint64_t count) {
     std::byte filled[longest_run];
     std::ranges::fill(filled, value);
-    return visit_runs(code, to, count, false,
+    return visit_runs(code, to, count, false, is_nothing,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
                           return write_run(code, to, run, at, bytes, filled);
                       });
@@ -287,8 +301,20 @@ Fault compare_bytes(const Code& code, const Bytes& a, const Bytes& b, std::uint6
                     std::int64_t& order) {
     order = 0;
     const auto first = static_cast<std::uint64_t>(a.first);
+    const auto compare = [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+        if (!run.leaf || code.shapes[run.leaf->number].kind != Shape::Kind::whole) return false;
+        const std::uint64_t byte = static_cast<std::uint64_t>(b.first) + (at - first);
+        const std::byte* value =
+            is_inside(code, b, count) ? same_value(code, run, at, bytes, b, byte) : nullptr;
+        if (!value) return false;
+        const std::uint64_t size = 8 * code.shapes[run.leaf->number].slots;
+        const int found = std::memcmp(run.leaf->slots, value, size);
+        if (order == 0) order = found < 0 ? -1 : found > 0;
+        return true;
+    };
     return visit_runs(
-        code, a, count, false, [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+        code, a, count, false, compare,
+        [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
             std::byte left[longest_run], right[longest_run];
             Fault wrong = read_run(code, a, run, at, bytes, left);
             if (wrong == Fault::none)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,7 +49,7 @@ class FieldWriter {
 
     void write(const Variable& variable, std::uint32_t at, const std::string& path,
                Direction direction) {
-        if (variable.space != Space::frame || kind_.fields.size() >= Library::most_parts) return;
+        if (variable.space != Space::frame) return;
         const std::size_t offset =
             8 * std::size_t{at} +
             (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});
@@ -95,7 +96,7 @@ class FieldWriter {
 
     void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
                const Variable& variable) {
-        if (kind_.fields.size() >= Library::most_parts) return;
+        if (is_full() && !has_handle(type)) return;
         const auto slot = static_cast<std::uint32_t>(offset / 8);
         switch (type.kind) {
             case Kind::array:
@@ -107,13 +108,13 @@ class FieldWriter {
                 return;
             case Kind::standard:
                 for (const Variable* member : type.members)
-                    write(*member, slot, name + ".", inner(direction));
+                    write_part(*member, slot, name + ".", direction, false);
                 return;
             case Kind::block:
                 for (const Variable* member : all_variables(*type.routine))
                     if (member->section != Section::temp)
-                        write(*member, slot, name + "." + of_base(*type.routine, *member),
-                              inner(direction));
+                        write_part(*member, slot, name + "." + of_base(*type.routine, *member),
+                                   direction, is_own(member->section));
                 return;
             case Kind::interface:
             case Kind::reference:
@@ -131,14 +132,41 @@ class FieldWriter {
         }
     }
 
-    /// One that a block keeps for itself is no field.
+    static bool is_own(Section section) {
+        return section == Section::local || section == Section::output;
+    }
+
+    /// Parts of an instance are not wired one by one. `is_local`: it is the instance's own.
+    void write_part(const Variable& member, std::uint32_t slot, const std::string& path,
+                    Direction direction, bool is_local) {
+        const bool was_own = std::exchange(is_own_, is_own_ && is_local);
+        write(member, slot, path,
+              direction == Direction::output ? direction : Direction::local);
+        is_own_ = was_own;
+    }
+
+    /// Only what is given a block of the program is a field still.
+    bool is_full() const { return kind_.fields.size() >= Library::most_parts; }
+
+    static bool has_handle(const Type& type) {
+        const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
+        if (type.kind == Kind::array) return has_handle(*type.element);
+        if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
+        if (type.kind == Kind::block)
+            return std::ranges::any_of(all_variables(*type.routine), has);
+        return type.kind == Kind::handle;
+    }
+
+    /// `VAR axis : AXIS_REF` may be given one of the program's, as TwinCAT links it to one of its
+    /// numerical control. What a caller gives to a part is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
                       Direction direction) {
-        if (direction != Direction::in_out && direction != Direction::input) return;
+        const bool is_given = direction == Direction::in_out || direction == Direction::input;
+        if (!is_given && !is_own_) return;
         Field& field = add(name, Direction::in_out, lineshaft::Type::integer, offset);
         field.refers = type.standard->name;
         field.doc = type.standard->doc;
-        field.required = true;
+        field.required = is_given;
     }
 
     /// `before` is `table[`, or of the next dimension `table[2,`.
@@ -146,18 +174,13 @@ class FieldWriter {
                         Direction direction, const Variable& variable) {
         for (std::int64_t i = array.lower; i <= array.upper;
              ++i, offset += 8 * element_slots(array)) {
-            if (kind_.fields.size() >= Library::most_parts) return;
+            if (is_full() && !has_handle(*array.element)) return;
             const std::string name = before + std::to_string(i);
             if (array.has_inner)
                 write_elements(*array.element, offset, name + ",", direction, variable);
             else
                 write(*array.element, offset, name + "]", direction, variable);
         }
-    }
-
-    /// Parts of an instance are not wired one by one.
-    static Direction inner(Direction direction) {
-        return direction == Direction::output ? direction : Direction::local;
     }
 
     void write_scalar(const Type& type, std::size_t offset, const std::string& name,
@@ -192,6 +215,7 @@ class FieldWriter {
 
     Library::Made& made_;
     KindContext& kind_;
+    bool is_own_ = true;  ///< what is written is the kind's own, and given by nobody
 };
 
 /// The fields from `first` on are of a variable in VAR RETAIN, if it is one. Inputs come anew.
