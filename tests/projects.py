@@ -413,6 +413,16 @@ def check_named_programs():
     run("run", "named.yaml", "--quiet", "--no-native")
 
 
+def check_lost_bases():
+    """What a base that is not here would have is told by no message but the one of the library."""
+    twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
+    twincat("lost", "DUT", "Data", "TYPE Data EXTENDS ST_Strange : STRUCT own : INT; END_STRUCT END_TYPE")
+    twincat("lost", "POU", "MAIN", "PROGRAM MAIN\nVAR sensor : Sensor := (limit := 3); data : Data; END_VAR", "sensor(fault := 2, OUT => data.far); data.own := data.other;")
+    plcproj("lost/Lost.plcproj", "Lost", ["Sensor.TcPOU", "Data.TcDUT", "MAIN.TcPOU"], [("Tc9_Strange", "Tc9_Strange")])
+    said = run("check", "lost", code=2)
+    assert said.count("error[") == 1 and "FB_Strange" in said and "ST_Strange" in said, said
+
+
 def check_left_over():
     """Mistakes in what no task uses are warnings, and the rest runs; axes that blocks keep for themselves are blocks of the program."""
     twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR station : Station; END_VAR", "station(); GVL.spare();")
@@ -510,6 +520,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_apax()
     check_solution()
     check_named_programs()
+    check_lost_bases()
     check_left_over()
     check_foreign_names()
     check_hostile()

@@ -143,6 +143,39 @@ struct Constructing {
     const Pou* of;
 };
 
+/// `Block[(a := 1), (a := 2)]`: the arguments of each element; null: all have the same.
+const Expression* each_of(const std::vector<Argument>* values) {
+    if (!values || values->size() != 1 || values->front().is_named()) return nullptr;
+    const Expression* list = values->front().value;
+    return list && list->kind == E::list && !list->is_structure() ? list : nullptr;
+}
+
+void construct(Checking& c, const Constructing& at, const Type& type,
+               const std::vector<Argument>* values, const std::function<Expression*()>& part,
+               Block& to);
+
+void construct_each(Checking& c, const Constructing& at, const Type& array, const Expression& list,
+                    const std::function<Expression*()>& part, Block& to) {
+    const auto given = static_cast<std::int64_t>(list.arguments.size());
+    if (given != static_cast<std::int64_t>(array.count())) {
+        c.fail(code::wrong_arguments, list.place,
+               fmt::format("the array has {} elements, and arguments for {} are given",
+                           array.count(), given));
+        return;
+    }
+    for (std::int64_t i = 0; i < given; ++i) {
+        const auto element = [&] {
+            Expression* made = make(c, E::index, at.like);
+            made->operands[0] = part();
+            made->arguments.push_back(
+                {.value = make_constant(c, at.like, lint_type, {.integer = array.lower + i})});
+            return made;
+        };
+        const Expression& one = *list.arguments[static_cast<std::size_t>(i)].value;
+        construct(c, at, *array.element, &one.arguments, element, to);
+    }
+}
+
 /// Calls FB_init of the instances in `part`, which makes a node each time, with `values`.
 void construct(Checking& c, const Constructing& at, const Type& type,
                const std::vector<Argument>* values, const std::function<Expression*()>& part,
@@ -158,6 +191,8 @@ void construct(Checking& c, const Constructing& at, const Type& type,
                 [&] { return make_member(c, part(), member->text); }, to);
         return;
     }
+    if (const Expression* list = each_of(values))
+        return construct_each(c, at, type, *list, part, to);
     Variable& counter =
         add_hidden(c, at.counters, at.like, fmt::format("index{}", at.counters.size()), lint_type);
     counter.of = at.of;

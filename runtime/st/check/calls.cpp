@@ -65,6 +65,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     if (!named)
         return c.fail(code::wrong_arguments, argument.value->place,
                       fmt::format("'{}' takes {} argument{}", routine.name, i, i == 1 ? "" : "s"));
+    if (routine.has_unknown_base) return nullptr;
     std::vector<std::string> names;
     for (const Variable* variable : variables)
         if (variable->is_parameter() || inner) names.emplace_back(variable->text);
@@ -99,6 +100,16 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
                            describe(given)),
                texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
+}
+
+/// TwinCAT takes what is given last.
+void note_twice(Checking& c, const Argument& argument) {
+    const std::string message = fmt::format("'{}' is given twice", argument.variable->text);
+    const Place& place = argument.value->place;
+    if (place.dialect().is_loose && argument.is_named() && !argument.is_output)
+        c.warn(code::wrong_arguments, place, message + ", and the last one counts", "");
+    else
+        c.fail(code::wrong_arguments, place, message);
 }
 
 void check_argument(Checking& c, Argument& argument, Variable& parameter) {
@@ -209,9 +220,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             continue;
         }
         if (argument.is_named()) c.note(argument.name.place, *parameter);
-        if (std::ranges::find(given, parameter) != given.end())
-            c.fail(code::wrong_arguments, argument.value->place,
-                   fmt::format("'{}' is given twice", parameter->text));
+        if (std::ranges::find(given, parameter) != given.end()) note_twice(c, argument);
         given.push_back(parameter);
         if (!is_open_array(*parameter)) check_argument(c, argument, *parameter);
     }

@@ -156,6 +156,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
         }
         Variable* found = by_place ? type.members[i] : find_member(type, argument.name.text);
         argument.variable = found;
+        if (!found && lacks_base(type)) continue;
         if (!found)
             c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),

@@ -39,7 +39,7 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
     std::vector<std::string> names =
         names_of(type.kind == Kind::block ? all_variables(*type.routine) : type.members);
-    if (type.routine && type.routine->has_unknown_base) return nullptr;
+    if (lacks_base(type)) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
             for (const auto& [method, routine] : type.routine->*known) names.emplace_back(method);

@@ -129,8 +129,14 @@ bool coerce_from(Checking& c, Expression& call, std::size_t first, const Type& t
     return good;
 }
 
+/// Of an enumeration with numbers what these are, where that is not all there is.
+const Type& number_type(const Type& type, const Type& other) {
+    return type.has_numbers && !same_type(type, other) ? *type.base : type;
+}
+
 /// What values of both types have in common; null if there is nothing.
-const Type* common_of(const Type& a, const Type& b) {
+const Type* common_of(const Type& one, const Type& two) {
+    const Type &a = number_type(one, two), &b = number_type(two, one);
     const Type* common = &a;
     if ((a.is_any() || b.is_any()) && a.is_real() != b.is_real())
         common = mixed(a, b);

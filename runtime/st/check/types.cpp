@@ -60,6 +60,7 @@ const Type* resolve_array(Checking& c, const TypeText& text) {
 /// The members of the structure that is extended come first.
 void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& names) {
     const Type* base = resolve_name(c, name);
+    to.has_unknown_base = !base || base->has_unknown_base;
     if (!base) return;
     if (base->kind != Kind::structure)
         return void(c.fail(code::type_does_not_fit, name.place,

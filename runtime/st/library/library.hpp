@@ -51,6 +51,9 @@ struct FaultPlace {
 /// (a ULINT from 2^63 on shows as negative), with the limits of their type. `{unit := 'mm/s'}`
 /// gives a number its unit.
 ///
+/// AXIS_REF in VAR or VAR_OUTPUT, of the kind or of instances in it, is a reference that may be
+/// given, by its path.
+///
 /// A value that a wire brings into an input of a narrower type is checked when the block is
 /// scanned: out of range is a fault, with the first instruction as its place.
 ///

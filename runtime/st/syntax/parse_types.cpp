@@ -89,7 +89,8 @@ bool has_range(const Parsing& p) {
 
 /// Type_Access : ( '_' '.' ) ? Qualified_Name
 ///             | 'STRING' Text_Length | 'WSTRING' Text_Length
-///             | Name Init_Values | Name '(' Subrange ')'
+///             | Name Init_Values | Name '[' Init_Values ( ',' Init_Values ) * ']'
+///             | Name '(' Subrange ')'
 ///             | Qualified_Name Generic_Values Init_Values ?
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
@@ -102,6 +103,9 @@ void parse_named_type(Parsing& p, TypeText& type) {
     if (is_text && has_length) {
         type.kind = TypeText::Kind::text;
         type.length = parse_length(p);
+    } else if (p.is(Word::open_bracket) && p.next().word == Word::open) {
+        type.kind = TypeText::Kind::enumeration;  // of an array's element: arguments of each FB_init
+        type.values.push_back({.value = parse_initial(p)});
     } else if (p.is(Word::open)) {
         const Word behind = p.next(2).word;
         if ((p.is_name(1) &&

@@ -13,6 +13,10 @@ const Expression& root_of(const Expression& place) {
     return is_part ? root_of(*place.operands[0]) : place;
 }
 
+bool lacks_base(const Type& type) {
+    return type.has_unknown_base || (type.routine && type.routine->has_unknown_base);
+}
+
 std::uint64_t bytes_of(const Type& type) {
     std::uint64_t bytes = 0;
     switch (type.kind) {

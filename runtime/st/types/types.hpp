@@ -69,6 +69,7 @@ struct Type {
                                  ///< ARRAY[*], to the first element of what is given
     std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};       ///< of a structure, a union
+    bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
@@ -128,6 +129,9 @@ const Expression& root_of(const Expression& place);
 /// The bytes that a controller's memory has of a value, one variable behind the other: what SIZEOF
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
+
+/// A block or a structure with a base that was told, or is lost: what it has besides is not known.
+bool lacks_base(const Type& type);
 
 /// A function or a method is called in it, which may write variables.
 bool has_call(const Expression& expression);
