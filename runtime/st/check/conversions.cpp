@@ -35,14 +35,15 @@ bool is_same_pattern(const Type& from, const Type& to) {
 }
 
 /// A REAL loses of a DINT what is above 2^24. CODESYS lets a REAL take an LREAL, and an integer one
-/// of its width with another sign.
+/// of its width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
     const bool of_dint = from.kind == Kind::integer && from.bits == 32 && is_single(to);
     const bool is_real = from.kind == Kind::real && is_single(to);
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
-                              from.bits == to.bits && !to.is_subrange;
+                              from.bits <= to.bits && from.is_signed != to.is_signed &&
+                              !to.is_subrange;
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && (is_real || changes_sign)))
         return false;
     warn_of_loss(c, e, to);

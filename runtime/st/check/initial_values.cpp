@@ -4,6 +4,7 @@
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
 
@@ -96,12 +97,29 @@ void check_repeated(Checking& c, Expression& repeated, Wide times, const Element
     }
 }
 
+/// CODESYS: `[COUNT(5)]`, so many times as a constant says.
+bool is_repeated_by_name(Checking& c, const Expression& e) {
+    if (e.kind != E::call || !e.place.dialect().is_loose) return false;
+    const Expression* count = e.operands[0];
+    if (const auto name = count->kind == E::member ? qualified_name(c, *count) : std::nullopt)
+        count = make_name(c, *count, name->text);
+    const Variable* variable = count->kind == E::name ? find_variable(c, count->token) : nullptr;
+    return variable && variable->space == Space::constant;
+}
+
+Expression* repeated_by_name(Checking& c, const Expression& call) {
+    Expression* made = make_copy(c, call);
+    made->kind = E::repeated;
+    return made;
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     const Elements elements{array, !list.is_nested()};
     const Wide room = elements.count();
     Wide count = 0;
     for (Argument& argument : list.arguments) {
+        if (is_repeated_by_name(c, *argument.value)) argument.value = repeated_by_name(c, *argument.value);
         if (argument.value->kind != E::repeated) {
             check_element(c, argument.value, elements, count++);
             continue;

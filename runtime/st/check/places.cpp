@@ -56,6 +56,21 @@ const Type* fail_member(Checking& c, const Expression& e, const Type& type, std:
                   fmt::format("{} has no '{}'", describe(type), name), suggest(name, names));
 }
 
+/// CODESYS: `status.READY`, the bit of a constant's number. Null: it is none, and nothing told.
+const Type* check_named_bit(Checking& c, Expression*& e, const Type& type) {
+    const bool has_bits = type.kind == Kind::bits || type.kind == Kind::integer;
+    if (!has_bits || !e->place.dialect().is_loose || e->operands[0]->kind == E::bit) return nullptr;
+    const Variable* number = find_variable(c, e->token);
+    if (!number || number->space != Space::constant) return nullptr;
+    if (!number->type->is_integer() && !number->type->is_bits()) return nullptr;
+    const Wide bit = number->value.integer;
+    if (bit < 0 || bit >= type.bits) return nullptr;
+    c.note(e->token.place, *number);
+    e = make_bit(c, *e, e->operands[0]);
+    e->bits = {static_cast<std::uint8_t>(bit), 1};
+    return &bool_type;
+}
+
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
@@ -101,6 +116,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     }
     if (type->is_instance() && same_name(name, "eno"))  // what has no such output was executed
         return become(c, e, bool_type, {.integer = 1});
+    if (const Type* bit = check_named_bit(c, e, *type)) return bit;
     return fail_member(c, *e, *type, name);
 }
 
