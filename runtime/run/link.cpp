@@ -50,8 +50,8 @@ std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& c
     auto kinds = std::make_shared<Catalog>();
     if (program.texts.empty()) return kinds;
     Diagnostics found;
-    const auto library = st::compile_used(program.texts, types_of(program), catalog, found,
-                                          options_of(program));
+    const auto library =
+        st::compile_used(program.texts, types_of(program), catalog, found, options_of(program));
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};

@@ -232,9 +232,10 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
     const projects::Project& project = chosen->project;
-    const auto library = out.empty() ? st::compile_used(project.sources, task_programs(project), standard_blocks(), out,
-                                            {.references = references_of(project)})
-                                     : std::optional<st::Library>();
+    const auto library =
+        out.empty() ? st::compile_used(project.sources, task_programs(project), standard_blocks(),
+                                       out, {.references = references_of(project)})
+                    : std::optional<st::Library>();
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);
     std::vector<NewBlock> programs = programs_of(*library, tasks);

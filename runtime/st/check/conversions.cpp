@@ -383,6 +383,8 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         common = b.is_code ? &lint_type : &b.plain();
     } else if (b.is_any()) {
         common = a.is_code ? &lint_type : &a.plain();
+    } else if (a.has_numbers && b.has_numbers && e.place.dialect().is_loose && !same_type(a, b)) {
+        common = &lint_type;
     } else {
         common = common_type(a, b);
     }

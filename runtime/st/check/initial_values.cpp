@@ -119,7 +119,8 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
     const Wide room = elements.count();
     Wide count = 0;
     for (Argument& argument : list.arguments) {
-        if (is_repeated_by_name(c, *argument.value)) argument.value = repeated_by_name(c, *argument.value);
+        if (is_repeated_by_name(c, *argument.value))
+            argument.value = repeated_by_name(c, *argument.value);
         if (argument.value->kind != E::repeated) {
             check_element(c, argument.value, elements, count++);
             continue;

@@ -96,7 +96,8 @@ const Type* check_member(Checking& c, Expression*& e) {
         c.note(e->token.place, *found);
         const bool is_value = found->space == Space::constant;
         const bool is_own = type->kind == Kind::block && e->operands[0]->kind == E::self;
-        if (is_value && (is_own || c.is_in_test() || found->access == Access::public_))
+        const bool is_seen = is_own || c.is_in_test() || found->access == Access::public_;
+        if (is_value && (is_seen || e->place.dialect().is_loose))
             return become(c, e, *found->type, found->value);
         if (type->kind == Kind::block && !is_own && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,

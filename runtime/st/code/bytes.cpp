@@ -277,15 +277,15 @@ Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint
         if (value) std::memmove(run.leaf->slots, value, 8 * code.shapes[run.leaf->number].slots);
         return value != nullptr;
     };
-    return visit_runs(
-        code, to, count, backwards, copy,
-        [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
-            std::byte kept[longest_run];
-            Bytes source = from;
-            source.first = static_cast<std::int64_t>(at + distance);
-            const Fault wrong = read_bytes(code, source, bytes, kept);
-            return wrong == Fault::none ? write_run(code, to, run, at, bytes, kept) : wrong;
-        });
+    return visit_runs(code, to, count, backwards, copy,
+                      [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+                          std::byte kept[longest_run];
+                          Bytes source = from;
+                          source.first = static_cast<std::int64_t>(at + distance);
+                          const Fault wrong = read_bytes(code, source, bytes, kept);
+                          return wrong == Fault::none ? write_run(code, to, run, at, bytes, kept)
+                                                      : wrong;
+                      });
 }
 
 Fault fill_bytes(const Code& code, const Bytes& to, std::byte value, std::uint64_t count) {
@@ -313,8 +313,7 @@ Fault compare_bytes(const Code& code, const Bytes& a, const Bytes& b, std::uint6
         return true;
     };
     return visit_runs(
-        code, a, count, false, compare,
-        [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+        code, a, count, false, compare, [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
             std::byte left[longest_run], right[longest_run];
             Fault wrong = read_run(code, a, run, at, bytes, left);
             if (wrong == Fault::none)

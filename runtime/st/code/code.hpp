@@ -106,12 +106,12 @@ struct Code {
     std::vector<Handler> handlers;     ///< the inner ones first
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
-    mutable Witness* witness = nullptr;    ///< of tests; without one an assertion ends what runs
+    mutable Witness* witness = nullptr;  ///< of tests; without one an assertion ends what runs
     /// Of an instruction of each class [ns], where what is executed is counted.
     std::optional<InstructionTimes> times;
     /// Null: the machine interprets it. What is counted has none.
     std::shared_ptr<const Native> native;
-    mutable Probe* probe = nullptr;        ///< a debugger's that looks at scans
+    mutable Probe* probe = nullptr;  ///< a debugger's that looks at scans
 
     std::uint32_t left_slot() const { return globals_slot + globals; }
     std::uint32_t kind_slot() const { return left_slot() + (has_references ? 1 : 0); }

@@ -140,8 +140,7 @@ class FieldWriter {
     void write_part(const Variable& member, std::uint32_t slot, const std::string& path,
                     Direction direction, bool is_local) {
         const bool was_own = std::exchange(is_own_, is_own_ && is_local);
-        write(member, slot, path,
-              direction == Direction::output ? direction : Direction::local);
+        write(member, slot, path, direction == Direction::output ? direction : Direction::local);
         is_own_ = was_own;
     }
 
@@ -152,8 +151,7 @@ class FieldWriter {
         const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
         if (type.kind == Kind::array) return has_handle(*type.element);
         if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
-        if (type.kind == Kind::block)
-            return std::ranges::any_of(all_variables(*type.routine), has);
+        if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
         return type.kind == Kind::handle;
     }
 

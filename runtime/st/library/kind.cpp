@@ -35,7 +35,8 @@ bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
     return true;
 }
 
-[[gnu::noinline]] bool run_test(const KindContext& kind, std::byte* instance, const Context& context) {
+[[gnu::noinline]] bool run_test(const KindContext& kind, std::byte* instance,
+                                const Context& context) {
     kind.failure = kind.run_test(instance, context);
     return !kind.failure.empty() && refuse(kind, instance, Fault::assertion);
 }

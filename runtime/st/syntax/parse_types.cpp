@@ -104,7 +104,8 @@ void parse_named_type(Parsing& p, TypeText& type) {
         type.kind = TypeText::Kind::text;
         type.length = parse_length(p);
     } else if (p.is(Word::open_bracket) && p.next().word == Word::open) {
-        type.kind = TypeText::Kind::enumeration;  // of an array's element: arguments of each FB_init
+        type.kind =
+            TypeText::Kind::enumeration;  // of an array's element: arguments of each FB_init
         type.values.push_back({.value = parse_initial(p)});
     } else if (p.is(Word::open)) {
         const Word behind = p.next(2).word;
