@@ -53,7 +53,9 @@ class FieldWriter {
         const std::size_t offset =
             8 * std::size_t{at} +
             (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});
+        const bool was_own = std::exchange(is_own_, is_own_ && variable.section != Section::temp);
         write(*variable.type, offset, path + std::string(variable.text), direction, variable);
+        is_own_ = was_own;
     }
 
     /// VAR_IN_OUT: so that a program that has the block itself is told.
@@ -96,7 +98,7 @@ class FieldWriter {
 
     void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
                const Variable& variable) {
-        if (is_full() && !has_handle(type)) return;
+        if (is_left_out(type)) return;
         const auto slot = static_cast<std::uint32_t>(offset / 8);
         switch (type.kind) {
             case Kind::array:
@@ -144,8 +146,12 @@ class FieldWriter {
         is_own_ = was_own;
     }
 
-    /// Only what is given a block of the program is a field still.
-    bool is_full() const { return kind_.fields.size() >= Library::most_parts; }
+    /// Behind `most_parts` only what is given a block of the program is a field, as many again.
+    bool is_left_out(const Type& type) const {
+        const std::size_t count = kind_.fields.size();
+        return count >= Library::most_parts &&
+               (count >= 2 * Library::most_parts || !has_handle(type));
+    }
 
     static bool has_handle(const Type& type) {
         const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
@@ -172,7 +178,7 @@ class FieldWriter {
                         Direction direction, const Variable& variable) {
         for (std::int64_t i = array.lower; i <= array.upper;
              ++i, offset += 8 * element_slots(array)) {
-            if (is_full() && !has_handle(*array.element)) return;
+            if (is_left_out(*array.element)) return;
             const std::string name = before + std::to_string(i);
             if (array.has_inner)
                 write_elements(*array.element, offset, name + ",", direction, variable);

@@ -228,8 +228,8 @@ class Compiling {
     }
 
     void compile(const Job& job) {
-        const std::string own = cache_->path(std::to_string(::getpid())), source = own + ".cpp",
-                          made = own + ".so", log = own + ".log";
+        const std::string own = cache_->path(fmt::format("{:010}", ::getpid())),
+                          source = own + ".cpp", made = own + ".so", log = own + ".log";
         std::ofstream(source) << job.text;
         const bool fine = run(source, made, log);
         std::string first;
