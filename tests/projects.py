@@ -434,11 +434,15 @@ def check_left_over():
             "top(Axis := axis, Enable := TRUE, ParameterNumber := MC_AxisParameter.CommandedPosition, ReadMode := READMODE_CYCLIC);")
     twincat("rest", "POU", "Station_OLD", "FUNCTION_BLOCK Station_OLD\nVAR feed : Feed; END_VAR", "feed.gone := TRUE; missing();")
     twincat("rest", "GVL", "GVL", "VAR_GLOBAL\n spare : Feed;\nEND_VAR")
+    twincat("rest", "POU", "Drawn", "FUNCTION_BLOCK Drawn\nVAR_OUTPUT n : INT; END_VAR")
+    drawn_text = (work / "rest/Drawn.TcPOU").read_text().replace("<ST><![CDATA[]]></ST>", "<CFC/>")
+    write("rest/Drawn.TcPOU", drawn_text)
     write("rest/PlcTask.TcTTO", TASK)
-    files = ["MAIN.TcPOU", "Station.TcPOU", "Feed.TcPOU", "Station_OLD.TcPOU", "GVL.TcGVL", "PlcTask.TcTTO"]
+    files = ["MAIN.TcPOU", "Station.TcPOU", "Feed.TcPOU", "Station_OLD.TcPOU", "Drawn.TcPOU", "GVL.TcGVL", "PlcTask.TcTTO"]
     plcproj("rest/Rest.plcproj", "Rest", files, [("Tc9_Strange", "Tc9_Strange")])
     said = run("check", "rest")
     assert "ok  rest\n" in said and "Station_OLD.TcPOU" in said and "in what nothing here uses" in said, said
+    assert "the body of 'Drawn' is drawn (CFC), and only Structured Text, LD and FBD are read, in what nothing here uses" in said, said
     run("new", "rest", "--from", "rest")
     text = (work / "rest.yaml").read_text()
     assert '"station.feeds[1].axis": MAIN_station_feeds_1__axis' in text and "spare.axis: globals_spare_axis" in text, text
@@ -447,6 +451,14 @@ def check_left_over():
     run("run", "rest.yaml", "--quiet")
     twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR station : Station; old : Station_OLD; END_VAR", "station(); old();")
     assert "has no 'gone'" in run("check", "rest", code=2)
+    twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR drawn : Drawn; END_VAR", "drawn();")
+    said = run("check", "rest", code=2)
+    assert said.count("error[") == 1 and "'Drawn' is drawn" in said, said
+    twincat("rest", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR drawn : Drawn; END_VAR",
+            "TEST('counts'); drawn(); AssertEquals_INT(0, drawn.n, 'n'); TEST_FINISHED();")
+    twincat("rest", "POU", "MAIN", "PROGRAM MAIN\nVAR suite : Suite; END_VAR", "TcUnit.RUN();")
+    plcproj("rest/Rest.plcproj", "Rest", [*files, "Suite.TcPOU"], [("TcUnit", "TcUnit")])
+    assert "'Drawn' is drawn" in run("test", "rest", code=1)
 
 
 def check_foreign_names():

@@ -69,11 +69,13 @@ void Excerpts::append(const Excerpts& other) {
     text_ += other.text_;
 }
 
-std::shared_ptr<const SourceFile> Excerpts::finish(std::string path, std::string part) {
+std::shared_ptr<const SourceFile> Excerpts::finish(std::string path, std::string part,
+                                                   std::vector<Diagnostic> mistakes) {
     return std::make_shared<const SourceFile>(SourceFile{.path = std::move(path),
                                                          .text = std::exchange(text_, {}),
                                                          .part = std::move(part),
-                                                         .excerpts = std::exchange(excerpts_, {})});
+                                                         .excerpts = std::exchange(excerpts_, {}),
+                                                         .mistakes = std::move(mistakes)});
 }
 
 }  // namespace lineshaft::projects

@@ -36,7 +36,7 @@ Word declared_kind(const XmlFile& file, pugi::xml_node declaration) {
 /// Writes one object's text.
 class ObjectText {
   public:
-    ObjectText(const XmlFile& file, Diagnostics& out) : file_(file), out_(out) {}
+    explicit ObjectText(const XmlFile& file) : file_(file) {}
 
     /// POU and interface, with what it has inside before its body.
     void add_unit(pugi::xml_node unit) {
@@ -62,7 +62,9 @@ class ObjectText {
     void add_declaration(pugi::xml_node object) { add_lines(object.child("Declaration")); }
 
     std::shared_ptr<const SourceFile> finish(std::string part) {
-        return text_.finish(file_.file()->path, std::move(part));
+        std::vector<Diagnostic> mistakes = out_.list();
+        mistakes.insert(mistakes.end(), out_.warnings().begin(), out_.warnings().end());
+        return text_.finish(file_.file()->path, std::move(part), std::move(mistakes));
     }
 
   private:
@@ -167,7 +169,7 @@ class ObjectText {
     }
 
     const XmlFile& file_;
-    Diagnostics& out_;
+    Diagnostics out_;
     Excerpts text_;
     MadeVariables* variables_ = nullptr;  ///< of drawn bodies, where they are declared
     bool is_kept_ = true;                 ///< from scan to scan
@@ -248,7 +250,7 @@ void read_twincat_object(const Reading& to, const std::string& path, const Mark&
         if (kind == "Task") to.project.tasks.push_back(task_of(*file, object));
         const bool is_unit = kind == "POU" || kind == "Itf";
         if (!is_unit && kind != "DUT" && kind != "GVL" && kind != "EnumerationTextList") continue;
-        ObjectText text(*file, to.out);
+        ObjectText text(*file);
         if (is_unit)
             text.add_unit(object);
         else

@@ -213,6 +213,13 @@ void Diagnostics::add(std::string code, Mark mark, std::string message, std::str
             {std::move(code), std::move(mark), kept(std::move(message)), kept(std::move(help))});
 }
 
+void Diagnostics::add(const Diagnostic& found) {
+    if (found.is_warning)
+        warn(found.code, found.mark, found.message, found.help);
+    else
+        add(found.code, found.mark, found.message, found.help);
+}
+
 bool Diagnostics::keeps_warnings() const {
     return warnings_.size() < most_kept;
 }

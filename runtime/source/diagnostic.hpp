@@ -20,6 +20,18 @@ struct Mark {
     std::shared_ptr<const std::string> drawn = nullptr;
 };
 
+/// What a user got wrong.
+struct Diagnostic {
+    std::string code;  ///< `L0203`; `lineshaft explain L0203` prints the paragraph behind it
+    Mark mark;
+    std::string message;  ///< one line, lower case, no full stop
+    std::string help;     ///< shown under the caret: "did you mean 'shaft.velocity'?"; may be empty
+    bool is_warning = false;  ///< of what is allowed and hardly meant
+
+    /// With the element of a network that it is about, if any.
+    std::string whole_message() const;
+};
+
 /// Where a part of a text that was put together of others comes from: it ends where the next
 /// begins.
 struct Excerpt {
@@ -35,6 +47,9 @@ struct SourceFile {
     int first_line = 1;     ///< number of the line that `text` begins with: it may be a part
     std::string part = {};  ///< which of several texts that one file holds; empty: the only one
     std::vector<Excerpt> excerpts = {};  ///< of a text that does not stand like this in a file
+    /// Of what it was made of, and warnings: told by who compiles it, so that nobody minds what is
+    /// not used.
+    std::vector<Diagnostic> mistakes = {};
 
     /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.
     bool has_key(std::string_view key) const {
@@ -49,24 +64,14 @@ struct SourceFile {
 /// byte to a line and column. Of what goes over several lines the first is marked.
 Mark mark_of(const std::shared_ptr<const SourceFile>& file, std::size_t begin, std::size_t end);
 
-/// What a user got wrong.
-struct Diagnostic {
-    std::string code;  ///< `L0203`; `lineshaft explain L0203` prints the paragraph behind it
-    Mark mark;
-    std::string message;  ///< one line, lower case, no full stop
-    std::string help;     ///< shown under the caret: "did you mean 'shaft.velocity'?"; may be empty
-    bool is_warning = false;  ///< of what is allowed and hardly meant
-
-    /// With the element of a network that it is about, if any.
-    std::string whole_message() const;
-};
-
 /// Collects diagnostics so that all are shown at once, sorted by place when rendered. A file may
 /// have a mistake in each of its bytes: the first thousand are kept, their texts as far as they are
 /// shown.
 class Diagnostics {
   public:
     void add(std::string code, Mark mark, std::string message, std::string help = {});
+    /// A mistake or a warning that was found before.
+    void add(const Diagnostic& found);
     bool empty() const { return list_.empty(); }
     const std::vector<Diagnostic>& list() const { return list_; }
     /// Errors that were added, kept or not.

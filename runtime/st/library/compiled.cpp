@@ -26,6 +26,7 @@ void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const So
     std::set<const BlockType*> used;
     LibraryNames libraries(standard);
     for (const auto& source : to.sources) {
+        for (const Diagnostic& mistake : source->mistakes) out.add(mistake);
         const bool is_tests = source.get() == tests;
         Tokens tokens =
             read_tokens(source, out, is_tests ? SourceKind::tests : SourceKind::program);
