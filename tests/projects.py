@@ -219,7 +219,10 @@ def check_older_forms():
     write("old/Global.typ", "TYPE pins_typ : STRUCT\n  x, y : INT;\n END_STRUCT; END_TYPE\n")
     write("old/motion.typ", "TYPE move_typ : STRUCT\n  TargetPosition : DINT;\n  targetPosition : DINT;\n END_STRUCT; END_TYPE\n")
     write("old/ident.fun", "FUNCTION ST_ident : UINT\nVAR_INPUT name, st_ident : UDINT; END_VAR\nEND_FUNCTION\n")
-    assert run("check", "old").splitlines()[0] == "ok  old"
+    write("old/log.typ", "TYPE LogRead : STRUCT\n  entry : UDINT;\n END_STRUCT; END_TYPE\n")
+    write("old/log.fun", "FUNCTION_BLOCK logRead\nVAR_INPUT enable : BOOL; END_VAR\nEND_FUNCTION_BLOCK\n")
+    said = run("check", "old")
+    assert said.splitlines()[0] == "ok  old" and "'logRead' differs from 'LogRead' in capitals alone" in said, said
     wrong = write("wrong.var", "VAR\n  pins : STRING := (0);\nEND_VAR\n")
     assert "expected STRING, found a whole number" in run("check", wrong, code=2)
     wrong = write("wrong.st", "FUNCTION_BLOCK B\nVAR_INPUT to : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
@@ -252,6 +255,10 @@ def check_neighbours():
     export("third", "Main", "n := Missing(n);")
     said = run("check", "exports", code=2)
     assert "exports/third.xml" in said and "exports/first.xml:" not in said and "error[L0909]" not in said, said
+
+    write("exports/editor/plc.xml", (work / "exports/first.xml").read_text())
+    write("exports/editor/build/program.st", "PROGRAM Main\nn := 1;\nEND_PROGRAM\n")
+    assert run("check", "exports/editor").startswith("ok  exports/editor")
 
     for name, kind in (("one", "INT"), ("two", "BOOL")):
         write(f"examples/{name}/PLC_PRG.st", "PROGRAM PLC_PRG\nVAR t : Thing; x : Shared; END_VAR\nt.value := "

@@ -91,6 +91,13 @@ bool is_database(const std::string& file) {
     return lower(std::move(first)).find("data_block") == std::string::npos;
 }
 
+/// `build/`, which an editor writes anew out of the `plc.xml` beside it.
+bool is_built(const std::string& file) {
+    std::error_code unknown;
+    const fs::path folder = fs::path(file).parent_path();
+    return folder.filename() == "build" && fs::exists(folder.parent_path() / "plc.xml", unknown);
+}
+
 /// What projects list themselves: all below a `.plcproj`, all beside a `.prg`; and what lists them.
 void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
@@ -133,6 +140,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
     std::erase_if(files, is_database);
+    std::erase_if(files, is_built);
     leave_to_projects(files);
     std::ranges::sort(files);
     return files;

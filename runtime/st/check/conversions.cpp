@@ -34,8 +34,16 @@ bool is_same_pattern(const Type& from, const Type& to) {
     return mixes && from.bits <= to.bits && !to.is_subrange;
 }
 
-/// A REAL loses of a DINT what is above 2^24. CODESYS lets a REAL take an LREAL, and an integer one
-/// of its width or less with another sign.
+bool is_time_of_number(const Type& from, const Type& to) {
+    const auto is = [](const Type& number, const Type& time) {
+        return number.kind == Kind::integer && number.bits == 32 && !number.is_subrange &&
+               time.kind == Kind::time && !time.counts_ns;
+    };
+    return is(from, to) || is(to, from);
+}
+
+/// A REAL loses of a DINT what is above 2^24. CODESYS lets a REAL take an LREAL. An integer takes
+/// one of its width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
@@ -44,7 +52,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange;
-    if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && (is_real || changes_sign)))
+    if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && is_real) && !changes_sign)
         return false;
     warn_of_loss(c, e, to);
     return true;
@@ -179,7 +187,8 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     }
     if (!whole) return refuse_conversion(c, *e, to);
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
-    if (to.is_any() || bit) return take_type(c, e, to, e->constant);
+    const bool no_time = to.kind == Kind::time && value == 0;
+    if (to.is_any() || bit || no_time) return take_type(c, e, to, e->constant);
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_negative = value < 0 && -value <= pattern / 2 && !to.is_signed &&
@@ -304,8 +313,9 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         from.values == to.values)
         return true;
     if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});
-    const bool fits =
-        from.is_scalar() && (widens(from, to) || is_same_pattern(from, to) || rounds(c, *e, to));
+    const bool is_time = e->place.dialect().dint_is_time && is_time_of_number(from.plain(), to);
+    const bool fits = from.is_scalar() && (is_time || widens(from, to) ||
+                                           is_same_pattern(from, to) || rounds(c, *e, to));
     if (!fits) return refuse_conversion(c, *e, to);
     return convert(c, e, to);
 }

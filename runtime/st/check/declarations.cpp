@@ -388,7 +388,8 @@ void collect_names(Checking& c) {
         Routine* first = find_in(all.routines, full_name.text);
         const bool is_other = pou->kind == PouKind::function &&
                               is_overload(*pou, first, all.overloads, full_name.text);
-        const bool added = !is_other && is_new_name(c, full_name, all.places);
+        const bool added = !is_other && !is_told_by_capitals(c, full_name, all.places) &&
+                           is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);

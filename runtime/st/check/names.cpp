@@ -65,6 +65,17 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
     return false;
 }
 
+bool is_told_by_capitals(Checking& c, const Token& name, const NameMap<Place>& names) {
+    const auto known = names.find(name.text);
+    const bool is_other = known != names.end() && known->second.text() != name.text;
+    if (!is_other || !name.place.dialect().capitals_count) return false;
+    c.warn(code::declared_twice, name.place,
+           fmt::format("'{}' differs from '{}' in capitals alone, and means that here", name.text,
+                       known->second.text()),
+           fmt::format("the first stands in line {}", known->second.mark().line));
+    return true;
+}
+
 std::vector<std::string> visible_names(Checking& c) {
     std::vector<std::string> names;
     for (const Routine* r = c.routine; r; r = r->owner)

@@ -8,6 +8,8 @@ namespace lineshaft::st {
 Variable* find_variable(Checking& c, const Token& token);
 /// Adds it, or tells that it is declared twice.
 bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test = false);
+/// B&R's own libraries have such: the first one is meant by both, which is told.
+bool is_told_by_capitals(Checking& c, const Token& name, const NameMap<Place>& names);
 
 /// What a suggestion is chosen from.
 std::vector<std::string> visible_names(Checking& c);

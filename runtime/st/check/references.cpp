@@ -375,6 +375,26 @@ bool take_query(Checking& c, Expression*& e, const Routine& called) {
     return true;
 }
 
+bool means_address(const Expression& e, const Expression& other) {
+    const bool is_alias = e.kind == E::deref && e.operands[0]->type->is_alias();
+    if (!is_alias || !e.type || !e.place.dialect().references_take_addresses) return false;
+    const bool is_number = e.type->is_number() || e.type->is_bits();
+    return other.type->is_pointer() || (is_null(other) && !is_number);
+}
+
+void take_addresses(Checking& c, Expression& e) {
+    for (const std::size_t at : {0, 1}) {
+        Expression*& side = e.operands[at];
+        if (means_address(*side, *e.operands[1 - at]))
+            side = make_converted(c, side->operands[0], pointer_to(c, *side->type));
+    }
+}
+
+void assign_address(Checking& c, Statement& s) {
+    s.target = without_alias(s.target);
+    bind(c, s.value, *s.target->type);
+}
+
 void check_reference_assignment(Checking& c, Statement& s) {
     const Type* type = check(c, s.target);
     const Type* given = check(c, s.value);

@@ -4,11 +4,11 @@
 
 namespace lineshaft::st {
 
-/// REFERENCE TO, REF_TO, POINTER TO. What it is to may be declared further down, or be what it is
-/// in.
 /// POINTER TO that type.
 const Type& pointer_to(Checking& c, const Type& target);
 
+/// REFERENCE TO, REF_TO, POINTER TO. What it is to may be declared further down, or be what it is
+/// in.
 const Type* resolve_reference(Checking& c, const TypeText& text);
 /// Of those that had to wait until all types are known.
 void resolve_targets(Checking& c);
@@ -27,7 +27,6 @@ const Type* check_pointer_index(Checking& c, Expression*& e);
 /// A VAR_IN_OUT is given that: what it refers to may end with the call at hand.
 void note_lending(Checking& c, const Expression& place);
 
-/// `r REF= x;`
 /// `target ?= value;`: NULL, where what the value is to is not of the target's type.
 void check_attempt(Checking& c, Statement& s);
 
@@ -35,7 +34,15 @@ void check_attempt(Checking& c, Statement& s);
 /// type; false: an argument is wrong, which was told.
 bool take_query(Checking& c, Expression*& e, const Routine& called);
 
+/// `r REF= x;`
 void check_reference_assignment(Checking& c, Statement& s);
+/// `e`, what a REFERENCE TO refers to, stands for where that is beside `other`, an address, as B&R
+/// has it: `r := ADR(x)`, `r <> 0`.
+bool means_address(const Expression& e, const Expression& other);
+/// Where a side of a comparison does.
+void take_addresses(Checking& c, Expression& e);
+/// Where the target of an assignment does.
+void assign_address(Checking& c, Statement& s);
 /// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
 std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);
 /// One of both is a reference: comparisons, and what is reckoned with a POINTER.

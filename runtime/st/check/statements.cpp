@@ -377,6 +377,7 @@ void check_assignment(Checking& c, Statement*& s) {
     check(c, s->value, type);
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
+    if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     const bool is_instance = is_place(*s->value) || s->value->kind == E::call;
     if (type->kind == Kind::block && s->op == Word::assign && is_instance &&
         same_type(*type, *s->value->type))

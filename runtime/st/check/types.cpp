@@ -89,18 +89,6 @@ bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
     return !made.members.empty();
 }
 
-/// B&R's own motion library has such: the first one is meant by both.
-bool is_told_by_capitals(Checking& c, const Token& name, const NameMap<Place>& names) {
-    const auto known = names.find(name.text);
-    const bool is_other = known != names.end() && known->second.text() != name.text;
-    if (!is_other || !name.place.dialect().capitals_count) return false;
-    c.warn(code::declared_twice, name.place,
-           fmt::format("'{}' differs from '{}' in capitals alone, and means that here", name.text,
-                       known->second.text()),
-           fmt::format("the first stands in line {}", known->second.mark().line));
-    return true;
-}
-
 const Type* resolve_structure(Checking& c, const TypeText& text) {
     const bool is_union = text.kind == TypeText::Kind::union_;
     Type& type =

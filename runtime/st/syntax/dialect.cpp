@@ -13,7 +13,8 @@ const Dialect iec = {.sign_precedes_power = true,
                      .named_inputs_may_be_left_out = true,
                      .programs_are_named = true,
                      .selects_by_texts = true,
-                     .loops_begin_narrowed = true};
+                     .loops_begin_narrowed = true,
+                     .references_take_addresses = true};
 
 const Dialect automation_studio = [] {
     Dialect made = iec;
@@ -36,7 +37,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .dint_becomes_real = true,
                      .numbers_stand_for_names = true,
                      .texts_of_integers_have_signs = true,
-                     .packs_as_s7 = true};
+                     .packs_as_s7 = true,
+                     .dint_is_time = true};
 
 const Dialect& dialect_of(std::string_view path) {
     struct Ending {

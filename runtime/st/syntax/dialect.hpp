@@ -25,6 +25,8 @@ struct Dialect {
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
+    bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
+    bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the

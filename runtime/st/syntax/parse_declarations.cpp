@@ -62,10 +62,11 @@ void parse_labels(Parsing& p) {
 }
 
 /// Located_At : 'AT' ( Direct | Name )
-/// Only one variable is there. Of another variable's bytes it is a second view.
+/// Only one variable is there, but for an address that is left open. Of another variable's bytes it
+/// is a second view.
 Token parse_location(Parsing& p, const std::vector<Token>& names) {
     if (!p.accept(Word::at_)) return {};
-    if (names.size() > 1) refuse_shared_place(p);
+    if (names.size() > 1 && !p.here().text.ends_with('*')) refuse_shared_place(p);
     if (p.is(Word::direct) || p.is_name()) return p.take();
     expected(p, "an address", "after AT");
     return {};
