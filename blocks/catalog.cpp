@@ -73,6 +73,7 @@ Catalog make_catalog() {
     blocks.add<PositionProfile>();
     blocks.add<VelocityProfile>();
     blocks.add<AccelerationProfile>();
+    blocks.add<MotionInPosition>();
     blocks.add<Home>();
     blocks.add<SetPosition>();
     blocks.add<SetOverride>();

@@ -187,6 +187,8 @@ void Axis::look(const Context& context, std::int64_t now) {
     if (doing == Doing::following_group) return;
     if (doing == Doing::following_axes)
         follow(context);
+    else if (doing == Doing::following_set_points)
+        go_on_from_set_point(now);
     else if (doing == Doing::following_profile)
         base = profile_motion.at(profile_motion.start.until(now), profile_table(context));
     else

@@ -50,6 +50,7 @@ struct Axis {
         following_axes,
         following_profile,
         following_group,
+        following_set_points,
     };
 
     /// The way that is left behind the end of `point_motion`, of the same job.
@@ -141,7 +142,7 @@ struct Axis {
     std::int64_t trigger_aborts = 0;
     Safe safe;
     std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
-    std::int64_t led_at = 0;       ///< when it had the last set-point of that [ns]
+    std::int64_t led_at = 0;       ///< when its group, or a command, moved it last [ns]
 
     static constexpr std::string_view type = "axis";
     static constexpr std::string_view doc = "axis that takes commands: see the MC_ blocks";
@@ -185,6 +186,8 @@ struct Axis {
     MotionError cannot_follow() const;
     void begin_to_follow(const Moment& at);
     bool follows_group() const { return doing == Doing::following_group; }
+    /// Nothing is known of what comes next.
+    bool is_led() const { return follows_group() || doing == Doing::following_set_points; }
     /// The set-point of its group at the scan under way. It is shown then, wherever the axis stands
     /// in the order of its task.
     void follow_group(const MotionState& set_point, const Moment& at);
@@ -362,6 +365,15 @@ struct Axis {
     void replan(const Context& context, const Moment& at);
     double target_of(const Request& request, const Start& from) const;
     double modulo_target(const Request& request, const Start& from) const;
+    double nearest_to(double place, double shown_there) const;
+
+    // axis_set_points.cpp: the program says in each scan where the axis is.
+    MotionState set_point_of(const Request& request, double here) const;
+    MotionError plan_set_point(const Request& request, const Moment& at, const Start& from);
+    void take_set_point(const MotionState& next, const Moment& at);
+    void change_set_point(const Context& context, const Moment& at, const Request& request);
+    void end_set_points(const Context& context, const Moment& at);
+    void go_on_from_set_point(std::int64_t now);
 
     // axis_blending.cpp: from one move into the next.
     struct Before {

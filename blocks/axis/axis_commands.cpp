@@ -110,6 +110,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
         case Command::position_profile:
         case Command::velocity_profile:
         case Command::acceleration_profile:
+        case Command::motion_in_position:
         case Command::gear_in:
         case Command::gear_out:
         case Command::gear_in_pos:
@@ -285,6 +286,7 @@ MotionError Axis::plan_any(const Context& context, const Request& request, const
     shortage = {};
     if (is_synchronous(request.command)) return plan_sync(context, request, at, from);
     if (is_profile(request.command)) return plan_profile(context, request, at, from);
+    if (request.command == Command::motion_in_position) return plan_set_point(request, at, from);
     return plan(request, at, from);
 }
 
@@ -451,7 +453,12 @@ double Axis::modulo_target(const Request& request, const Start& from) const {
         return request.position + period * std::ceil(turns - tolerance);
     if (direction == MoveDirection::negative)
         return request.position + period * std::floor(turns + tolerance);
-    return request.position + period * std::floor(turns + 0.5);
+    return nearest_to(stop, request.position);
+}
+
+/// Of the places that show a position of a modulo axis the one next to a place.
+double Axis::nearest_to(double place, double shown_there) const {
+    return shown_there + period * std::floor((place - shown_there) / period + 0.5);
 }
 
 /// The position is known at once, at the end of the move, or where the signal came: from there the

@@ -39,6 +39,10 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
         return stop_again(context, at, job);
     const bool waits =
         request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
+    const bool is_of_slave = is_phasing(request.command) || request.command == Command::gear_out ||
+                             request.command == Command::cam_out;
+    if (doing == Doing::following_set_points && is_of_slave)
+        return tell(job, Progress::failed, MotionError::wrong_state);
     if ((!waits || is_phasing(request.command)) && !next_state(request.command, state))
         return tell(job, Progress::failed, refusal());
     if (request.command == Command::reset && state == AxisState::error_stop &&
@@ -75,6 +79,8 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         if (running.told_end == 0 || job.request.holds != 0) return;
         return end_hold(context, at);
     }
+    if (job.request.command == Command::motion_in_position)
+        return change_set_point(context, at, job.request);
     if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));
     if (&running == &added) return change_added(context, at, before);
     if (plan_any(context, job.request, at, start_again()) != MotionError::none) {

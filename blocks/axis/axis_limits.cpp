@@ -77,7 +77,8 @@ bool Axis::leads_inside(const Motion& beneath, const Start& from) const {
 
 /// The motion under way, as it is planned, from the scan under way on.
 bool Axis::goes_on_inside() const {
-    if (doing == Doing::following_axes || doing == Doing::following_profile) return false;
+    if (doing == Doing::following_axes || doing == Doing::following_profile || is_led())
+        return false;
     Way way({scan_time});
     if (doing == Doing::moving_to_point)
         way.add(point_motion);
@@ -132,7 +133,7 @@ bool Axis::finds_room(const MotionState& next) {
 /// What is shown is at each time a state from which the axis can stop inside its limits: with its
 /// defaults, or by going on as planned. One that is inside and goes on to an end stays so.
 bool Axis::is_safe(const MotionState& next) {
-    if (doing == Doing::following_group) return bounds().contain({next.position, next.position});
+    if (is_led()) return bounds().contain({next.position, next.position});
     if (safe.contains(next)) return true;
     const Bounds kept = bounds();
     const bool is_inside = kept.lowest == lowest_position && kept.highest == highest_position;
@@ -259,7 +260,7 @@ bool Axis::may_add(const PointMotion& next) const {
     if (!software_limits) return true;
     const bool ends = doing == Doing::moving_to_point ||
                       (doing != Doing::following_axes && doing != Doing::following_profile &&
-                       velocity_motion.ramp.end.velocity == 0);
+                       !is_led() && velocity_motion.ramp.end.velocity == 0);
     if (!ends) return true;
     Way way(next.start);
     if (doing == Doing::moving_to_point)

@@ -32,6 +32,7 @@ constexpr StateRow rows[] = {
     {C::position_profile,         "MC_PositionProfile",            {no,  Dsc, no,  no,  Dsc, Dsc, Dsc, no }},
     {C::velocity_profile,         "MC_VelocityProfile",            {no,  Con, no,  no,  Con, Con, Con, no }},
     {C::acceleration_profile,     "MC_AccelerationProfile",        {no,  Con, no,  no,  Con, Con, Con, no }},
+    {C::motion_in_position,       "MC_MotionInPosition, Enable",   {no,  Syn, no,  no,  Syn, Syn, Syn, no }},
     {C::set_position,             "MC_SetPosition",                {Dis, Std, no,  Stp, Dsc, Con, Syn, Err}},
     {C::set_override,             "MC_SetOverride",                {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},
     {C::write_parameter,          "MC_WriteParameter",             {Dis, Std, Hom, Stp, Dsc, Con, Syn, Err}},

@@ -45,6 +45,7 @@ enum class Command : std::int64_t {
     position_profile,
     velocity_profile,
     acceleration_profile,
+    motion_in_position,
     set_position,
     set_override,
     write_parameter,

@@ -531,10 +531,12 @@ MotionState Axis::planned(double t) const {
             s.acceleration + more.acceleration, s.jerk + more.jerk};
 }
 
-/// A master that is measured, or scanned less often than its slave, moves in jumps.
+/// A master that is measured, led by set-points, or scanned less often than its slave, moves in
+/// jumps.
 bool Axis::is_steady(const Context& context) const {
     const Axis& leader = context.seen_instance<Axis>(sync.coupling.master.axis);
-    return !is_measured(sync.coupling) && leader.scan_interval <= scan_interval;
+    return !is_measured(sync.coupling) && leader.doing != Doing::following_set_points &&
+           leader.scan_interval <= scan_interval;
 }
 
 /// The master as the axis sees it, from now on: as it has planned it itself; one that follows

@@ -108,7 +108,7 @@ bool masters_are_valid(const Axis& axis, const KeptState& machine) {
 
 bool motions_are_valid(const Axis& axis, const KeptState& machine) {
     using Doing = Axis::Doing;
-    return is_one_of(axis.doing, Doing::following_group) &&
+    return is_one_of(axis.doing, Doing::following_set_points) &&
            is_valid(axis.velocity_motion, machine) && is_valid(axis.point_motion, machine) &&
            is_valid(axis.added_motion, machine) &&
            is_valid(axis.profile_motion, axis.doing == Doing::following_profile, machine) &&

@@ -14,10 +14,14 @@ void CommandBlock::run(const Scan& now, const Context& context) {
 void CommandBlock::send(const Scan& now, const Context& context) {
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
-    if (!updating || refusal != MotionError::none) return;
+    const bool is_free = job.in == JobPlace::no_list;
+    if (updating && is_free && pins != job.request && is_at_work(context)) update(now, context);
+}
+
+bool CommandBlock::is_at_work(const Context& context) const {
+    if (refusal != MotionError::none) return false;
     const Progress now_at = progress_of(job, context);
-    const bool at_work = now_at >= Progress::active && now_at <= Progress::reached;
-    if (at_work && job.in == JobPlace::no_list && pins != job.request) update(now, context);
+    return now_at >= Progress::active && now_at <= Progress::reached;
 }
 
 bool CommandState::begin(JobState& job, MotionError refused) {

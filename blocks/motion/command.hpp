@@ -58,6 +58,8 @@ struct CommandBlock : CommandState {
     void send(const Scan& now, const Context& context);
     void show(const Context& context) { CommandState::show(job, context); }
 
+    /// Whether the axis carries it out.
+    bool is_at_work(const Context& context) const;
     /// Puts the pins into the job and the job into the axis' inbox: as a new one, or as a change.
     void start(const Scan& now, const Context& context);
     void update(const Scan& now, const Context& context);

@@ -1,5 +1,7 @@
 #include "blocks/motion/moves.hpp"
 
+#include "blocks/inputs.hpp"
+
 namespace lineshaft::command_kinds {
 
 using namespace pin;
@@ -75,6 +77,34 @@ std::span<const Field> MoveSuperimposed::fields() {
 void MoveSuperimposed::scan(const Scan& now, const Context& context) {
     run(now, context);
     covered_distance = covered(context, &Axis::added);
+}
+
+std::span<const Field> MotionInPosition::fields() {
+    using B = CommandBlock;
+    static const Field table[] = {
+        pin::axis(),
+        input("Enable", &B::execute, "", "the axis takes the set-points; falling: it brakes"),
+        pin::position("set-point; of a modulo axis the next place that shows it"),
+        input("Velocity", &B::pins, &Request::velocity, "{Axis}/s", "of the set-point"),
+        input("Acceleration", &B::pins, &Request::acceleration, "{Axis}/s^2", "of the set-point"),
+        output("Busy", &B::busy, "", "the command has not ended yet"),
+        output("Active", &B::active, "", "it controls the axis"),
+        output("CommandAborted", &B::command_aborted, "", "another command has taken over"),
+        output("Error", &B::error, "", "the command is refused, or the axis has failed"),
+        output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names)};
+    return table;
+}
+
+void MotionInPosition::scan(const Scan& now, const Context& context) {
+    pins.holds = execute ? 1 : 0;
+    const bool goes_on = execute || job.request.holds != 0;
+    const bool is_free = job.in == JobPlace::no_list ||
+                         (job.task == context.task && job.scan == now.index);  // a second call
+    if (rising_edge(execute, last_execute))
+        start(now, context);
+    else if (goes_on && is_free && is_at_work(context))
+        update(now, context);
+    show(context);
 }
 
 }  // namespace lineshaft

@@ -61,4 +61,19 @@ struct MoveSuperimposed : CommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
+/// MC_MotionInPosition of Siemens: the program says in each scan where the axis is, as a planner of
+/// its own has it. The axis takes that as its set-point in its next scan, without looking at
+/// velocities or accelerations; where none comes it goes on as the last one says. A falling Enable
+/// makes it brake with its defaults.
+struct MotionInPosition : CommandBlock {
+    static constexpr std::string_view type = "MC_MotionInPosition";
+    static constexpr std::string_view doc = "leads an axis by set-points, scan by scan";
+    static std::span<const Field> fields();
+    constexpr MotionInPosition() {
+        pins.command = Command::motion_in_position;
+        pins.velocity = pins.acceleration = 0;
+    }
+    void scan(const Scan& now, const Context& context);
+};
+
 }  // namespace lineshaft

@@ -51,7 +51,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool is_real = from.kind == Kind::real && is_single(to);
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
-                              !to.is_subrange;
+                              !to.is_subrange && (dialect.is_loose || !is_constant(e));
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && is_real) && !changes_sign)
         return false;
     warn_of_loss(c, e, to);

@@ -383,7 +383,7 @@ bool means_address(const Expression& e, const Expression& other) {
 }
 
 void take_addresses(Checking& c, Expression& e) {
-    for (const std::size_t at : {0, 1}) {
+    for (std::size_t at = 0; at < 2; ++at) {
         Expression*& side = e.operands[at];
         if (means_address(*side, *e.operands[1 - at]))
             side = make_converted(c, side->operands[0], pointer_to(c, *side->type));

@@ -1,6 +1,7 @@
 #include "blocks/motion/moves.hpp"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "tests/blocks/motion/bench.hpp"
 
@@ -136,4 +137,90 @@ TEST_CASE("CoveredDistance is what a superimposed move has added, whatever ends 
     CHECK(bench.is("added.CommandAborted"));
     CHECK(bench.number("added.CoveredDistance") > before);
     CHECK(bench.number("added.CoveredDistance") < before + 0.003 * 50);
+}
+
+namespace {
+
+/// With more of the axis' parameters.
+std::string led_axis(std::string_view more = "") {
+    return fmt::format(R"(
+tasks: {{main: {{every: 1 ms}}}}
+blocks:
+  x: {{type: axis, task: main, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 0 mm/s^3{}}}
+  lead: {{type: MC_MotionInPosition, task: main, Axis: x}}
+  other: {{type: MC_MotionInPosition, task: main, Axis: x, Position: 30 mm}}
+  move: {{type: MC_MoveAbsolute, task: main, Axis: x, Position: 2 mm, Velocity: 100 mm/s, BufferMode: mcBuffered}}
+  stop: {{type: MC_Stop, task: main, Axis: x}}
+  out: {{type: MC_GearOut, task: main, Slave: x}}
+  reset: {{type: MC_Reset, task: main, Axis: x}}
+)",
+                       more);
+}
+
+}  // namespace
+
+TEST_CASE("MC_MotionInPosition gives set-points, which the axis takes in its next scan") {
+    MotionBench bench(led_axis());
+    bench.check(R"(
+    ms   lead.Enable lead.Position lead.Velocity | lead.Busy lead.Active x.state             x.position x.velocity
+    1    1           0.1           20            | 1         0           standstill          0          0
+    2    .           0.12          .             | 1         1           synchronized_motion 0.1        20
+    3    .           0.14          .             | 1         1           synchronized_motion 0.12       20
+    4    .           0.5           30            | 1         1           synchronized_motion 0.14       20
+    5    .           0.53          .             | 1         1           synchronized_motion 0.5        30
+    6    0           .             .             | 1         1           synchronized_motion 0.53       30
+    7    .           .             .             | 0         0           discrete_motion     0.56       30
+    36   .           .             .             | 0         0           discrete_motion     1.0095     1
+    37   .           .             .             | 0         0           standstill          1.01       0 )");
+}
+
+TEST_CASE("MC_MotionInPosition of a slower task is gone on from, and what waits follows it") {
+    MotionBench bench(led_axis());
+    bench.check(R"(
+    ms   lead.Enable lead.Position lead.Velocity move.Execute | lead.Active lead.CommandAborted move.Busy move.Active move.Done x.state             x.position x.velocity
+    1    1           1             0             0            | 0           0                   0         0           0         standstill          0          0
+    2    .           .             .             1            | 1           0                   1         0           0         synchronized_motion 1          0
+    9    .           .             .             .            | 1           0                   1         0           0         synchronized_motion 1          0
+    10   0           .             .             .            | 1           0                   1         0           0         synchronized_motion 1          0
+    11   .           .             .             .            | 0           0                   1         1           0         discrete_motion     1          0
+    90   .           .             .             0            | 0           0                   0         0           0         standstill          2          0 )");
+}
+
+TEST_CASE(
+    "MC_MotionInPosition is taken over by another one and by MC_Stop, and no slave of a gear") {
+    MotionBench bench(led_axis());
+    bench.check(R"(
+    ms   lead.Enable lead.Position other.Enable out.Execute stop.Execute | lead.CommandAborted other.Active other.CommandAborted out.ErrorID x.state             x.position
+    1    1           1             0            0           0            | 0                   0            0                    none        standstill          0
+    3    .           2             .            1           .            | 0                   0            0                    none        synchronized_motion 1
+    4    .           .             .            .           .            | 0                   0            0                    wrong_state synchronized_motion 2
+    5    .           .             1            0           .            | 0                   0            0                    none        synchronized_motion 2
+    6    .           .             .            .           .            | 1                   1            0                    none        synchronized_motion 30
+    7    .           .             .            .           1            | 1                   1            0                    none        synchronized_motion 30
+    8    .           .             .            .           .            | 1                   0            1                    none        stopping            30 )");
+}
+
+TEST_CASE("MC_MotionInPosition turns a modulo axis by the shorter way") {
+    MotionBench bench(led_axis(", modulo: true, period: 360 mm"));
+    bench.check(R"(
+    ms   lead.Enable lead.Position | x.position
+    1    1           1             | 0
+    2    .           359           | 1
+    3    .           358           | 359
+    4    .           .             | 358 )");
+    CHECK(bench.axis("x").base.position == -2);
+}
+
+TEST_CASE("MC_MotionInPosition keeps the axis inside its software limits") {
+    MotionBench bench(
+        led_axis(", software_limits: true, lowest_position: -10 mm, highest_position: 50 mm"));
+    bench.check(R"(
+    ms   lead.Enable lead.Position lead.Velocity reset.Execute | lead.Error lead.ErrorID   x.state             x.position
+    1    1           50.1          0             0             | 0          none           standstill          0
+    2    .           .             .             .             | 1          software_limit standstill          0
+    3    0           .             .             .             | 0          none           standstill          0
+    4    1           49.9          100           .             | 0          none           standstill          0
+    5    .           50            .             .             | 0          none           synchronized_motion 49.9
+    6    .           50.1          .             .             | 0          none           synchronized_motion 50
+    7    .           .             .             .             | 1          software_limit error_stop          50 )");
 }

@@ -158,6 +158,7 @@ class LimitedAxes {
             {"MC_WriteParameter", "Execute ParameterNumber Value"},
             {"MC_WriteParameter", "Execute ParameterNumber Value ExecutionMode"},
             {"MC_AccelerationProfile", "Execute AccelerationScale BufferMode"},
+            {"MC_MotionInPosition", "Enable Position Wanted Acceleration"},
             {"MC_Reset", "Execute"},
             {"MC_Power", "Enable EnablePositive EnableNegative"}};
         return table;
@@ -172,6 +173,7 @@ class LimitedAxes {
             {"MC_CamIn", "Execute SlaveScaling MasterSyncPosition BufferMode"},
             {"MC_PhasingAbsolute", "Execute PhaseShift"},
             {"MC_GearOut", "Execute"},
+            {"MC_MotionInPosition", "Enable Position Wanted Acceleration"},
             {"MC_MoveAbsolute", "Execute Position Deceleration BufferMode"},
             {"MC_Stop", "Execute Deceleration Jerk"},
             {"MC_MoveSuperimposed", "Execute Distance VelocityDiff"},
@@ -261,6 +263,7 @@ blocks:
         set_all("", ".Execute", 0);
         for (const char* level : {".Enable", ".EnablePositive", ".EnableNegative", "Factor"})
             set_all("", level, 1);
+        set_all("MC_MotionIn", ".Enable", 0);
     }
 
     /// At the end all axes with limits stand, lose their errors, and go to where they are inside.
@@ -290,7 +293,8 @@ blocks:
         if (axis.scan_time == w.time) return {};
         const Watched last = w;
         const bool steps = axis.sync.coupling.transition != TransitionMode::jerk_limited;
-        const bool follows = axis.doing == Axis::Doing::following_axes || steps;
+        const bool is_led = axis.led_at > last.time;
+        const bool follows = axis.doing == Axis::Doing::following_axes || is_led || steps;
         w = {w.name,
              &axis,
              axis.scan_time,
