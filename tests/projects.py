@@ -312,6 +312,35 @@ def check_automation_studio():
     assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
 
 
+def check_mapp():
+    """B&R: what configures mapp declares variables; names may differ in capitals alone; a program's folder has any name."""
+    def configuration(path, *elements):
+        write(path, '<?xml version="1.0"?>\n<?AutomationStudio Version="4.9"?>\n<Configuration>\n'
+              + "".join(f'  <Element ID="{name}" Type="{kind}"/>\n' for name, kind in elements) + "</Configuration>\n")
+    program = ('<Program xmlns="http://br-automation.co.at/AS/Program"><Files><File>Variables.var</File><File>Main.st</File>'
+               "<File>actions/More.st</File></Files></Program>\n")
+    configuration("Mapp/Physical/one/cpu/mappServices/Alarms.mpalarmxcore", ("gAlarms", "mpalarmxcore"))
+    configuration("Mapp/Physical/two/cpu/mappServices/Other.mpalarmxcore", ("gAlarms", "mpalarmxcore"))
+    configuration("Mapp/Physical/one/cpu/mappMotion/Axes.axis", ("gAxis", "axis"), ("two words", "axis"))
+    write("Mapp/Physical/one/cpu/Safe/SafeLOGIC-1.plcproj", "\0\1")
+    write("Mapp/Logical/Global.var", "VAR CONSTANT\n\tLOW_a : USINT := 97;\n\tLOW_A : USINT := 65;\nEND_VAR\nVAR\n\tprogram_ : INT;\nEND_VAR\n")
+    write("Mapp/Logical/Kinds.typ", "TYPE Mode : (STOP := 0, GO := 70000); END_TYPE\n")
+    write("Mapp/Logical/Program/IEC.prg", program)
+    write("Mapp/Logical/Program/Variables.var", "VAR\n\tStop, isOn : BOOL;\n\tison, small, big, index : USINT;\n\tmode : Mode;\n\twait : TIME;\n"
+          "\tms : UDINT := 1500;\n\tlink : UDINT;\n\taxis : REFERENCE TO McAxisType;\n\tlong_text : STRING[70000];\n\tr : REAL;\nEND_VAR\n")
+    write("Mapp/Logical/Program/Main.st", "PROGRAM _CYCLIC\n\tlink := ADR(gAlarms);\n\taxis ACCESS ADR(gAxis);\n\tsmall := LOW_a;\n\tbig := LOW_A;\n"
+          "\tCASE mode OF\n\t\tSTOP: Stop := TRUE; mode := GO;\n\t\tGO: isOn := TRUE;\n\tEND_CASE\n\tison := isOn;\n\twait := ms;\n"
+          "\tr := SIN(ms);\n\tIF EDGEPOS(isOn) THEN index := index + 1; END_IF\n\tmore;\nEND_PROGRAM\n")
+    write("Mapp/Logical/Program/actions/More.st", "ACTION more:\n\tprogram_ := MAX(program_, 1, );\nEND_ACTION\n")
+    said = run("check", "Mapp")
+    assert said.splitlines()[0] == "ok  Mapp", said
+    run("new", "mapp", "--from", "Mapp")
+    write("mapp.yaml", (work / "mapp.yaml").read_text() + "expect:\n"
+          + "".join(f"  - {{at: end, Program.{name}: {value}}}\n" for name, value in
+                    (("small", 97), ("big", 65), ("Stop", "true"), ("index", 1), ("wait", "1.5 s"))))
+    run("run", "mapp.yaml", "--quiet")
+
+
 def check_apax():
     write("package/apax.yml", "name: p\n")
     write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
@@ -536,6 +565,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_mapp()
     check_apax()
     check_solution()
     check_named_programs()

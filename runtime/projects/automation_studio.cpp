@@ -18,6 +18,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view mapp_form = ".var";
+
+std::string beginning_of(const fs::path& file) {
+    std::string start(4096, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    return start;
+}
+
+std::string_view type_of_element(std::string_view kind) {
+    if (kind == "axis") return "McAxisType";
+    if (kind == "visioncomponent") return "ViComponentType";
+    return kind.starts_with("axesgroup") ? "McAxesGroupType" : "MpComIdentType";
+}
+
+/// A folder may be called as a word of the language.
+bool is_one_name(const std::string& text) {
+    Diagnostics unread;
+    const auto file = std::make_shared<const SourceFile>(SourceFile{"name.prg", text});
+    const auto tokens = st::read_tokens(file, unread).tokens;
+    return tokens.size() == 2 && tokens[0].word == st::Word::name;
+}
+
 /// One program of Automation Studio.
 class IecProgram {
   public:
@@ -28,7 +51,8 @@ class IecProgram {
         const Mark place = list_.mark_of_tag(list_.root());
         const std::string name = folder().filename().string();
         Excerpts text;
-        text.write(fmt::format("PROGRAM {}\n", name), place);
+        const char* const quote = is_one_name(name) ? "" : "\"";
+        text.write(fmt::format("PROGRAM {0}{1}{0}\n", quote, name), place);
         text.append(variables_);
         if (has_start_) text.write("VAR _has_started : BOOL; END_VAR\n", place);
         text.append(actions_);
@@ -65,6 +89,7 @@ class IecProgram {
         const std::string named = list_.plain(file);
         const Mark mark = list_.mark_of_tag(file);
         const std::string ending = lower(fs::path(named).extension().string());
+        if (ending == ".uam") return;  // which methods OPC UA sees
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named);
             if (const auto path = to_.resolve(path_of(named), mark, to_.out))
@@ -139,10 +164,51 @@ class IecProgram {
 }  // namespace
 
 bool is_iec_program(const fs::path& file) {
-    std::string start(4096, '\0');
-    std::ifstream stream(file, std::ios::binary);
-    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-    return start.find("<Program SubType=\"IEC\"") != std::string::npos;
+    const std::string start = beginning_of(file);
+    const bool is_named_so = lower(file.filename().string()) == "iec.prg";
+    return start.find("<Program SubType=\"IEC\"") != start.npos ||
+           (is_named_so && start.find("br-automation.co.at/AS/Program") != start.npos);
+}
+
+bool is_of_hardware(const fs::path& file) {
+    std::error_code unknown;
+    fs::path folder = file.parent_path();
+    for (; folder.has_filename(); folder = folder.parent_path())
+        if (folder.filename() == "Physical")
+            return fs::exists(folder.parent_path() / "Logical", unknown);
+    return false;
+}
+
+bool is_mapp_configuration(const fs::path& file) {
+    const bool is_of_mapp = std::ranges::any_of(file.parent_path(), [](const fs::path& folder) {
+        const std::string name = lower(folder.string());
+        return name.starts_with("mapp") || name.starts_with("exos");
+    });
+    const std::string ending = lower(file.extension().string());
+    const bool is_named_so = ending.starts_with(".mp") || ending == ".axis";
+    if (!is_named_so && !(is_of_mapp && is_of_hardware(file))) return false;
+    return beginning_of(file).find("<Configuration") != std::string::npos;
+}
+
+void read_mapp_configuration(const Reading& to, const std::string& path, const Mark& where) {
+    const auto file = XmlFile::read(path, to.out, where);
+    if (!file) return;
+    for (const pugi::xml_node element : file->root().children("Element")) {
+        const std::string id = file->plain(element.attribute("ID"));
+        const std::string kind = file->plain(element.attribute("Type"));
+        const auto is_there = [&](const auto& other) {
+            return other->part == id && other->read_as == mapp_form;
+        };
+        if (!is_one_name(id) || std::ranges::any_of(to.project.sources, is_there)) continue;
+        const Mark place = file->mark_of_tag(element);
+        Excerpts text;
+        text.write("VAR_GLOBAL\n", place);
+        file->copy(text, element.attribute("ID"));
+        text.write(fmt::format(" : {};\nEND_VAR\n", type_of_element(kind)), place);
+        SourceFile made = *text.finish(path, id);
+        made.read_as = mapp_form;
+        to.project.add(std::make_shared<const SourceFile>(std::move(made)));
+    }
 }
 
 void read_iec_program(const Reading& to, const std::string& path, const Mark& where) {

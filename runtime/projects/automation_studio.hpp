@@ -12,4 +12,16 @@ bool is_iec_program(const std::filesystem::path& file);
 /// and each ACTION is its own. `PROGRAM _EXIT` is left out: nothing ends a program here.
 void read_iec_program(const Reading& to, const std::string& path, const Mark& where);
 
+/// Whether a file is below `Physical`, beside which `Logical` has the sources.
+bool is_of_hardware(const std::filesystem::path& file);
+
+/// Whether a file of the hardware configures axes or components: `mappMotion/x.axis`,
+/// `mappServices/x.mpalarmxcore` and their like.
+bool is_mapp_configuration(const std::filesystem::path& file);
+
+/// Each Element is a global variable: an axis a McAxisType, a group a McAxesGroupType, others a
+/// MpComIdentType, which programs refer to as MpLink. Several configurations of a project may have
+/// it.
+void read_mapp_configuration(const Reading& to, const std::string& path, const Mark& where);
+
 }  // namespace lineshaft::projects

@@ -23,10 +23,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Beside the list of its files.
+bool is_of_br_library(const fs::path& file) {
+    std::error_code unknown;
+    constexpr const char* lists[] = {"IEC.lby", "ANSIC.lby"};
+    return std::ranges::any_of(
+        lists, [&](const char* list) { return fs::exists(file.parent_path() / list, unknown); });
+}
+
 void read_text(const Reading& to, const std::string& path, const Mark& where) {
     auto source = read_source(path, to.out, where);
     if (!source) return;
     read_configuration(to, source);
+    if (is_of_br_library(path)) {
+        SourceFile made = *source;
+        made.read_as = ".fun";
+        source = std::make_shared<const SourceFile>(std::move(made));
+    }
     to.project.add(std::move(source));
 }
 
@@ -98,7 +111,7 @@ bool is_built(const std::string& file) {
     return folder.filename() == "build" && fs::exists(folder.parent_path() / "plc.xml", unknown);
 }
 
-/// What projects list themselves: all below a `.plcproj`, all beside a `.prg`; and what lists them.
+/// What projects list themselves: all below a `.plcproj`, or a `.prg`; and what lists them.
 void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
     for (const std::string& file : files) {
@@ -111,8 +124,8 @@ void leave_to_projects(std::vector<std::string>& files) {
         if (is_solution(file)) return true;
         if (form && form->read == read_twincat_object)
             return std::ranges::any_of(folders, [&](const auto& f) { return file.starts_with(f); });
-        const std::string folder = (fs::path(file).parent_path() / "").string();
-        return !form && std::ranges::find(programs, folder) != programs.end();
+        return !form &&
+               std::ranges::any_of(programs, [&](const auto& f) { return file.starts_with(f); });
     });
 }
 
@@ -125,6 +138,8 @@ void Project::add(std::shared_ptr<const SourceFile> source) {
 
 bool is_source(const fs::path& file) {
     const Form* form = form_of(file);
+    if (is_mapp_configuration(file)) return true;
+    if (is_of_hardware(file)) return false;
     if (form && form->read == read_plcopen) return is_plcopen(file);
     if (form && form->read == read_iec_program) return is_iec_program(file);
     return is_apax(file) || form || is_structured_text(file);
@@ -149,6 +164,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
 void read_sources(const Reading& to, const std::string& path, const Mark& where) {
     const Form* form = form_of(path);
     if (is_apax(path)) return read_apax(to, path, where);
+    if (is_mapp_configuration(path)) return read_mapp_configuration(to, path, where);
     return form ? form->read(to, path, where) : read_text(to, path, where);
 }
 

@@ -47,6 +47,7 @@ struct SourceFile {
     int first_line = 1;     ///< number of the line that `text` begins with: it may be a part
     std::string part = {};  ///< which of several texts that one file holds; empty: the only one
     std::vector<Excerpt> excerpts = {};  ///< of a text that does not stand like this in a file
+    std::string read_as = {};  ///< `.var`: a name's ending that says how, where its own does not
     /// Of what it was made of, and warnings: told by who compiles it, so that nobody minds what is
     /// not used.
     std::vector<Diagnostic> mistakes = {};

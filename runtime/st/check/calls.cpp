@@ -1,5 +1,6 @@
 #include "runtime/st/check/calls.hpp"
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
@@ -17,6 +18,27 @@
 namespace lineshaft::st {
 
 namespace {
+
+/// What B&R's EDGEPOS keeps of each of its calls is a variable of the block in which the call
+/// stands. False: it has none, which was told.
+bool take_memory(Checking& c, Expression*& e, const Routine& called) {
+    const Token& name = called.pou->name;
+    const bool keeps = is_prelude(name) && lower(name.text).starts_with("edge");
+    if (!keeps || e->arguments.size() != 1) return true;
+    Routine* keeper = c.routine;
+    while (keeper->owner) keeper = keeper->owner;
+    if (!keeper->has_instances())
+        return c.fail(
+            code::wrong_place, e->place,
+            fmt::format("{} keeps what it was given, and a function keeps nothing", name.text),
+            "call it in a block, or give the function what was before");
+    Variable& before = c.make_variable(
+        *keeper, e->token,
+        c.checked.names.emplace_back(fmt::format("{} {}", name.text, keeper->variables.size())),
+        &bool_type);
+    e = make_with(c, *e, {e->arguments[0], {.value = make_use(c, *e, before)}});
+    return true;
+}
 
 bool is_variable(const Expression& e) {
     return e.kind == E::name || e.kind == E::member || e.kind == E::self || e.kind == E::deref ||
@@ -401,7 +423,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             }
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
-            if (!take_query(c, e, *routine)) return nullptr;
+            if (!take_query(c, e, *routine) || !take_memory(c, e, *routine)) return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);
         }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -100,6 +101,9 @@ struct Checking {
         const DeclarationBlock* block;
         const Declaration* declared;
     };
+    /// Variables of B&R whose names differ from another's beside them in capitals alone, by whose
+    /// they are and their names.
+    std::map<std::pair<const Pou*, std::string_view>, Variable*> by_capitals = {};
     NameMap<GlobalConstant> constants = {};  ///< by name; of a block as `Block.constant`
     std::deque<DeclarationBlock> constants_of_blocks = {};  ///< as lists of globals of their names
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so

@@ -42,8 +42,8 @@ bool is_time_of_number(const Type& from, const Type& to) {
     return is(from, to) || is(to, from);
 }
 
-/// A REAL loses of a DINT what is above 2^24. CODESYS lets a REAL take an LREAL. An integer takes
-/// one of its width or less with another sign.
+/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
+/// width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
@@ -52,7 +52,8 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
-    if (!(dialect.dint_becomes_real && of_dint) && !(dialect.is_loose && is_real) && !changes_sign)
+    if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
+        !changes_sign)
         return false;
     warn_of_loss(c, e, to);
     return true;
@@ -86,7 +87,8 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     }
     const bool is_other = from.has_numbers && from.name != to.name;
     const bool has_number = is_other || from.kind == Kind::bits;
-    if (has_number && to.has_numbers && e->place.dialect().is_loose) {
+    const bool are_numbers = e->place.dialect().enumerations_are_numbers;
+    if (has_number && to.has_numbers && are_numbers) {
         Expression* number = e;
         convert(c, number, lint_type);
         if (!coerce_enumeration(c, number, to)) return false;
@@ -97,7 +99,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     if (!is_constant(*e)) {
         constexpr std::int64_t most_numbers = 4096;
         const auto [least, most] = std::ranges::minmax(to.numbers);
-        const bool fits = e->place.dialect().is_loose && most - least < most_numbers;
+        const bool fits = are_numbers && most - least < most_numbers;
         if (fits) convert(c, e, to);
         return fits;
     }
@@ -314,7 +316,9 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});
     const bool is_time = e->place.dialect().dint_is_time && is_time_of_number(from.plain(), to);
-    const bool fits = from.is_scalar() && (is_time || widens(from, to) ||
+    const bool is_truth = from.kind == Kind::boolean && e->place.dialect().bool_is_number &&
+                          (to.kind == Kind::integer || to.kind == Kind::bits) && !to.is_subrange;
+    const bool fits = from.is_scalar() && (is_time || is_truth || widens(from, to) ||
                                            is_same_pattern(from, to) || rounds(c, *e, to));
     if (!fits) return refuse_conversion(c, *e, to);
     return convert(c, e, to);
@@ -393,7 +397,8 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         common = b.is_code ? &lint_type : &b.plain();
     } else if (b.is_any()) {
         common = a.is_code ? &lint_type : &a.plain();
-    } else if (a.has_numbers && b.has_numbers && e.place.dialect().is_loose && !same_type(a, b)) {
+    } else if (a.has_numbers && b.has_numbers && !same_type(a, b) &&
+               e.place.dialect().enumerations_are_numbers) {
         common = &lint_type;
     } else {
         common = common_type(a, b);

@@ -80,10 +80,24 @@ Token name_of_global(Checking& c, const Declaration& declared) {
 
 /// `Trace : Trace;`, where CODESYS tells by the place which is meant.
 bool is_beside_a_type(Checking& c, const Token& name) {
-    if (!name.place.dialect().is_loose || c.globals.contains(name.text)) return false;
+    const Dialect& dialect = name.place.dialect();
+    if (!(dialect.is_loose || dialect.capitals_count) || c.globals.contains(name.text))
+        return false;
     const Routine* block = find_in(c.users.routines, name.text);
-    return (block && block->pou->kind == PouKind::function_block) ||
-           c.users.types.contains(name.text);
+    const bool is_type = block && block->pou->kind == PouKind::function_block;
+    const bool is_folder = block && !block->is_function() && !dialect.programs_are_named;
+    return is_type || is_folder || c.users.types.contains(name.text);
+}
+
+/// `a` beside `A`, where capitals count.
+bool differs_in_capitals(const Variable& known, const Token& name) {
+    return name.place.dialect().capitals_count && known.text != name.text;
+}
+
+bool is_other_by_capitals(Checking& c, const Token& name) {
+    const Variable* known = find_in(c.globals, name.text);
+    return known && differs_in_capitals(*known, name) &&
+           !c.by_capitals.contains({known->of, name.text});
 }
 
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
@@ -92,7 +106,9 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = name_of_global(c, declared);
     if (block.is_qualified_only) name.text = in_list;
-    if (!is_beside_a_type(c, name) && !is_new_name(c, name, c.users.places)) return nullptr;
+    const bool is_other = is_other_by_capitals(c, name);
+    if (!is_other && !is_beside_a_type(c, name) && !is_new_name(c, name, c.users.places))
+        return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     c.globals.emplace(in_list, variable);
     if (type && type->kind == Kind::handle) return declare_object(c, *variable);
@@ -109,6 +125,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     refuse_abstract(c, type, declared.name.place);
     if (block.constant) make_constant(c, *variable);
     if (variable->space == Space::global) global_variables(c).members.push_back(variable);
+    if (is_other) c.by_capitals.emplace(std::pair(variable->of, name.text), variable);
     if (!block.is_qualified_only) c.globals.emplace(name.text, variable);
     return variable;
 }
@@ -264,6 +281,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             it->second = variable;  // of a base that keeps its own to itself
         else if (is_result && declared->name.place.dialect().capitals_count)
             it->second = variable;
+        else if (!added && differs_in_capitals(*it->second, declared->name))
+            c.by_capitals.emplace(std::pair(variable->of, variable->text), variable);
         else if (!added)
             c.fail(code::declared_twice, declared->name.place,
                    fmt::format("'{}' is declared twice", variable->text),

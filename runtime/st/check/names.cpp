@@ -39,7 +39,9 @@ const Type* unknown_name(Checking& c, const Expression& e) {
 
 }  // namespace
 
-Variable* find_variable(Checking& c, const Token& token) {
+namespace {
+
+Variable* find_in_any_capitals(Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
         if (Variable* variable = find_in(r->names, token.text)) return variable;
     if (token.local) return nullptr;
@@ -49,6 +51,24 @@ Variable* find_variable(Checking& c, const Token& token) {
             if (Variable* variable = declare_early(c, *constant)) return variable;
     }
     return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
+}
+
+/// A value of an enumeration is written exactly so.
+bool is_exactly_a_value(Checking& c, const Token& token) {
+    const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token);
+    return value && value->type->values[value->index] == token.text;
+}
+
+}  // namespace
+
+Variable* find_variable(Checking& c, const Token& token) {
+    Variable* found = find_in_any_capitals(c, token);
+    const bool differs = found && found->text != token.text && token.place.source &&
+                         token.place.dialect().capitals_count;
+    if (!differs) return found;
+    const auto exact = c.by_capitals.find({found->of, token.text});
+    if (exact != c.by_capitals.end()) return exact->second;
+    return is_exactly_a_value(c, token) ? nullptr : found;
 }
 
 bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {

@@ -132,8 +132,8 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     if (from.is_reference() && from.element && (is_target(to, *from.element) || sees_bytes))
         return become_converted(c, e, to);
     if (!to.element) return false;
-    const bool are_texts =
-        e->place.dialect().is_loose && from.kind == Kind::text && to.element->kind == Kind::text;
+    const bool are_texts = e->place.dialect().texts_have_any_length && from.kind == Kind::text &&
+                           to.element->kind == Kind::text;
     if (!are_texts && !is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
 }

@@ -198,12 +198,16 @@ const Type* resolve_text(Checking& c, const TypeText& text) {
     Expression* length = text.length;
     const auto whole = check_whole(c, length, lint_type);
     if (!whole) return nullptr;
-    const int least = text.place.dialect().is_loose ? 0 : 1;
-    if (*whole < least || *whole > longest_text)
+    const bool is_any = text.place.dialect().texts_have_any_length;
+    if (*whole < (is_any ? 0 : 1) || (*whole > longest_text && !is_any))
         return c.fail(code::value_out_of_range, length->place,
-                      fmt::format("a STRING has between {} and 32767 characters", least));
-    Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", static_cast<int>(*whole)));
-    type.length = static_cast<std::uint32_t>(*whole);
+                      fmt::format("a STRING has between {} and 32767 characters", is_any ? 0 : 1));
+    if (*whole > longest_text)
+        c.warn(code::value_out_of_range, length->place, "a STRING keeps 32767 characters here",
+               "what is longer is cut off");
+    const auto kept = static_cast<std::uint32_t>(std::min(*whole, longest_text));
+    Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", kept));
+    type.length = kept;
     return &type;
 }
 

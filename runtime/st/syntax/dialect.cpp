@@ -18,7 +18,10 @@ const Dialect iec = {.sign_precedes_power = true,
 
 const Dialect automation_studio = [] {
     Dialect made = iec;
-    made.capitals_count = true;
+    made.capitals_count = made.dint_is_time = made.bool_is_number = true;
+    made.texts_have_any_length = made.commas_may_end_lists = true;
+    made.dint_becomes_real = made.lreal_becomes_real = made.enumerations_are_numbers = true;
+    made.programs_are_named = false;
     return made;
 }();
 
@@ -26,10 +29,14 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .quotes_may_enclose_texts = true,
                          .named_inputs_may_be_left_out = true,
                          .dint_becomes_real = true,
+                         .lreal_becomes_real = true,
+                         .enumerations_are_numbers = true,
                          .bits_count_in_reals = true,
+                         .commas_may_end_lists = true,
                          .is_loose = true,
                          .programs_are_named = true,
-                         .texts_are_bytes = true};
+                         .texts_are_bytes = true,
+                         .texts_have_any_length = true};
 
 const Dialect scl = {.sign_precedes_power = false,
                      .sets_variables_of_instances = true,

@@ -13,20 +13,25 @@ struct Dialect {
     bool named_inputs_may_be_left_out = false;  ///< of a function, where it has no value for them
     bool sets_variables_of_instances = false;   ///< `instance.x := 1;` also of VAR and VAR_OUTPUT
     bool real_results_reckon_as_real = false;   ///< a DINT and a REAL make a REAL where one is due
-    bool dint_becomes_real = false;        ///< although a REAL does not hold every DINT: a warning
-    bool numbers_stand_for_names = false;  ///< 1 for `mcPositiveDirection`, as Siemens counts them
+    bool dint_becomes_real = false;         ///< although a REAL does not hold every DINT: a warning
+    bool lreal_becomes_real = false;        ///< although a REAL rounds it: a warning
+    bool enumerations_are_numbers = false;  ///< a variable's number is a value, also another's
+    bool numbers_stand_for_names = false;   ///< 1 for `mcPositiveDirection`, as Siemens counts them
     bool texts_of_integers_have_signs = false;  ///< INT_TO_STRING(5) is '+5', else '5'
-    bool bits_count_in_reals = false;  ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
-    bool is_loose = false;             ///< `f(a, )`, `RETURN(done);`, `;;`, CONCAT(STR1 := a)
-    bool programs_are_named = false;   ///< `Main.count` of a PROGRAM, of which there is one then
-    bool texts_are_bytes = false;      ///< `text[0]` is the first BYTE, and a 0 ends the text; else
-                                       ///< `text[1]` is the first CHAR
-    bool selects_by_texts = false;     ///< CASE of a STRING, as SIMATIC AX has it
+    bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
+    bool commas_may_end_lists = false;  ///< `f(a, )`
+    bool is_loose = false;              ///< `RETURN(done);`, `;;`, CONCAT(STR1 := a)
+    bool programs_are_named = false;    ///< `Main.count` of a PROGRAM, of which there is one then
+    bool texts_are_bytes = false;   ///< `text[0]` is the first BYTE, and a 0 ends the text; else
+                                    ///< `text[1]` is the first CHAR
+    bool selects_by_texts = false;  ///< CASE of a STRING, as SIMATIC AX has it
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
     bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
     bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
+    bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
+    bool bool_is_number = false;             ///< a BOOL is 0 or 1 where a number is due
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the

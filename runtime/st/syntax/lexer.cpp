@@ -481,7 +481,8 @@ class Lexer {
 
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {
-    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(file->path);
+    const std::string& named = file->read_as.empty() ? file->path : file->read_as;
+    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(named);
     return Lexer(std::make_shared<const Source>(Source{file, dialect, kind}), out).read();
 }
 

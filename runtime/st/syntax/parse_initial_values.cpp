@@ -67,13 +67,13 @@ Expression* parse_initials(Parsing& p) {
 }
 
 /// Params : ( Param_Assign ( ',' Param_Assign ) * ) ?
-/// CODESYS takes a ',' behind the last one, too.
+/// CODESYS and B&R take a ',' behind the last one, too.
 void parse_arguments(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
     const Level level(p);
     if (!p.panic && !p.is(end)) {
         do
             if (!parse_argument(p, to, end, parse_value)) return;
-        while ((p.accept(Word::comma) && !(p.source->dialect.is_loose && p.is(end))) ||
+        while ((p.accept(Word::comma) && !(p.source->dialect.commas_may_end_lists && p.is(end))) ||
                refuse_semicolon(p));
     }
     to.place = to.place.to(p.here().place);
