@@ -466,7 +466,39 @@ class Trees(Network):
         return box(name, name.capitalize(), parts + [self.leaf(a, of="INT"), self.leaf(b, of="INT")], ["EN"] if has_en else [],
                    [("", "BOOL")], ["<n />"], has_en=has_en), text
 
+    def branch_of_box(self, left):
+        """A box with EN, to which a contact leads, or the branch itself."""
+        contact, text = self.contact(False)
+        if self.draw.random() < 0.3:
+            contact, text = '<o t="BoxTreeTerminator"><n n="Input" /></o>', "TRUE"
+        target, a, b = self.draw.choice(["v0", "v1", "v2"]), self.draw.choice(NUMBERS), self.draw.choice(NUMBERS + ["v0", "2"])
+        enabled = self.kept(f"({left} AND {text})")
+        self.statements.append(f"IF {enabled} THEN {target} := {a} + {b}; END_IF")
+        return box("ADD", "Add", [contact, self.leaf(a, of="INT"), self.leaf(b, of="INT")], ["EN"], [("ENO", "BOOL"), ("", "INT")],
+                   ["<n />", operand(target, of="INT")], has_en=True, has_eno=True), enabled
+
+    def parallel_of_boxes(self):
+        before, left = self.contact() if self.draw.random() < 0.7 else ("", "TRUE")
+        plain = [self.contact(False) for _ in range(self.draw.randint(0, 2))]
+        is_short = self.draw.random() < 0.5
+        left = self.kept(left)
+        either = " OR ".join(text for _, text in plain) or "FALSE"
+        if is_short:
+            due, found = self.kept(f"({left} AND NOT ({either}))"), self.kept("FALSE")
+            self.statements.append(f"IF {due} THEN")
+        boxes = [self.branch_of_box("TRUE" if is_short else left) for _ in range(self.draw.randint(1, 2))]
+        text = " OR ".join(enabled for _, enabled in boxes)
+        if is_short:
+            self.statements += [f"{found} := {text};", "END_IF"]
+            text = found
+        trees = [tree for tree, _ in plain + boxes]
+        mode = value("Mode", "BoxShortCircuit" if is_short else "Sequential")
+        return (f'<o t="BoxTreeParallel">{inside(before, "Input")}<l2 n="Trees">{"".join(trees)}</l2>{mode}</o>',
+                f"(({left} AND ({either})) OR {text})")
+
     def parallel(self):
+        if self.draw.random() < 0.4:
+            return self.parallel_of_boxes()
         branches = [self.contact(False) for _ in range(self.draw.randint(2, 3))]
         text = f"({' OR '.join(text for _, text in branches)})"
         before = ""

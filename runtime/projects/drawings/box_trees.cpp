@@ -177,6 +177,7 @@ class BoxTrees {
         }
         ++depth_;
         Value value = value_of_kind(tree, place);
+        value = both(std::exchange(left_, {}), std::move(value), place);
         --depth_;
         if (value.text.text().size() <= longest_text) return value;
         out_.add(code::too_deep_or_large, place,
@@ -200,7 +201,8 @@ class BoxTrees {
         if (kind == "BoxTreeParallel") return value_of_parallel(tree, place);
         if (kind == "BoxTreeTerminator") {
             const pugi::xml_node input = Archive::member(tree, "Input");
-            return Archive::is_null(input) ? always(place) : value_of(input);
+            if (!Archive::is_null(input)) return value_of(input);
+            return left_.is_empty() ? always(place) : std::exchange(left_, {});
         }
         refuse(place, fmt::format("'{}' of a network is not supported", kind),
                "convert the body to Structured Text in TwinCAT");
@@ -265,17 +267,64 @@ class BoxTrees {
     /// Branches beside each other, behind what leads to all of them.
     Value value_of_parallel(pugi::xml_node parallel, const Mark& place) {
         const pugi::xml_node input = Archive::member(parallel, "Input");
-        const Value before = value_of(input);
-        const std::size_t done = now_.text().size();
+        Value before = Archive::is_null(input) ? std::exchange(left_, {}) : value_of(input);
+        const auto trees = Archive::items(Archive::member(parallel, "Trees"));
+        if (std::ranges::none_of(trees, [&](auto tree) { return has_box(tree); }))
+            return both(before, any_of(trees, {}, place), place);
+        if (!before.is_empty()) before.type = "BOOL";
+        if (archive_.text(parallel, "Mode") == "BoxShortCircuit")
+            return short_circuit(before, trees, place);
+        if (!before.is_empty()) before = fixed(before, place);
+        return any_of(trees, before, place);
+    }
+
+    /// `before` leads to each of them.
+    Value any_of(const std::vector<pugi::xml_node>& trees, const Value& before, const Mark& place) {
         Value value;
-        for (const pugi::xml_node tree : Archive::items(Archive::member(parallel, "Trees")))
+        for (const pugi::xml_node tree : trees) {
+            left_ = before;
             value = either(std::move(value), value_of(tree), place);
-        const bool may_be_left_out =
-            !before.is_empty() || archive_.text(parallel, "Mode") == "BoxShortCircuit";
-        if (may_be_left_out && now_.text().size() > done)
-            refuse(place, "a box in one of several branches may not be called in each scan",
-                   "draw it before them");
-        return both(before, value, place);
+            left_ = {};
+        }
+        return value;
+    }
+
+    /// Branches with boxes are left out where nothing leads to them, or another one is TRUE
+    /// already.
+    Value short_circuit(const Value& before, std::vector<pugi::xml_node> trees, const Mark& place) {
+        const auto boxes = std::ranges::stable_partition(
+            trees, [&](pugi::xml_node tree) { return !has_box(tree); });
+        const std::vector<pugi::xml_node> plain(trees.begin(), boxes.begin());
+        const std::vector<pugi::xml_node> rest(boxes.begin(), boxes.end());
+        const Value others = any_of(plain, {}, place);
+        Value due = others.is_empty() ? before : both(before, negated(others, place), place);
+        if (due.is_empty() || due.is_always) return any_of(rest, {}, place);
+        due.type = "BOOL";
+        due = fixed(due, place);
+        const std::string found = variables_.make("_wire", "BOOL");
+        now_.write(found + " := FALSE;\n", place);
+        write_if(due, place);
+        kept_in(found, any_of(rest, {}, place), place);
+        write_end_if(due, place);
+        const Value known = others.is_empty() ? Value{} : both(before, others, place);
+        return either(known, words(found, place, "BOOL"), place);
+    }
+
+    /// One that does something, and is not only a part of an expression.
+    bool has_box(pugi::xml_node tree) const {
+        const auto is_box = [&](pugi::xml_node node) {
+            return Archive::member(node, "BoxType") && takes_power(node) &&
+                   !st::same_name(archive_.text(node, "BoxType"), "and");
+        };
+        return is_box(tree) || tree.find_node(is_box);
+    }
+
+    /// Its first input is what leads to it, and not a value.
+    bool takes_power(pugi::xml_node box) const {
+        const bool has_instance =
+            !archive_.text(Archive::member(box, "Instance"), "Operand").empty();
+        return has_instance || archive_.is_true(box, "EN") ||
+               st::same_name(archive_.text(box, "BoxType"), "and");
     }
 
     /// Its targets take what leads to it.
@@ -368,7 +417,9 @@ class BoxTrees {
 
     /// Statements of a box, and what it gives to what is behind it.
     Value value_of_box(pugi::xml_node node, bool is_taken) {
+        Value left = takes_power(node) ? Value{} : std::exchange(left_, {});
         Box box = read_box(node);
+        left_ = std::move(left);
         const std::string call = archive_.text(node, "CallType");
         if (archive_.is_true(node, "ProvidesSTSnippet")) return execute(box);
         const bool is_block = !box.instance.empty() || call == "FunctionBlock" ||
@@ -547,6 +598,7 @@ class BoxTrees {
     Excerpts now_;                        ///< statements since the last label or jump
     std::size_t network_ = 0;             ///< under way, from 1 on
     int depth_ = 0;
+    Value left_ = {};  ///< what leads to the branch under way; empty: the rail, or it is taken
 };
 
 }  // namespace
