@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Random networks of LD and FBD, and instruction lists, written as PLCopen XML and as Structured Text by rules of their own, and networks as
-TwinCAT keeps them: both runs write the same bytes.
+TwinCAT and Automation Studio keep them: both runs write the same bytes.
 
 usage: drawings.py LINESHAFT [NETWORKS [SEED]]
 """
@@ -614,6 +614,161 @@ def trees(draw, name):
     return net
 
 
+# ---- ladders of B&R: rows of cells, in a folder each
+
+EMPTY, LINE = "<empty/>", "<line/>"
+
+
+def joined(cell):
+    """Its right end goes up to the row above."""
+    return cell if 'or="true"' in cell else cell.replace("/>", ' or="true"/>', 1) if cell.endswith("/>") and ">" not in cell[:-2] else cell.replace(
+        ">", ' or="true">', 1)
+
+
+def widened(rows, height, width):
+    rows = [row + [LINE if i == 0 else EMPTY] * (width - wide(row)) for i, row in enumerate(rows)]
+    return rows + [[EMPTY] * width for _ in range(height - len(rows))]
+
+
+def wide(row):
+    return sum(2 if cell.startswith("<function") else 1 for cell in row)
+
+
+def function(kind, position, input_name="", output_name="", eno=False):
+    mark = ' ENO="true"' if eno else ""
+    return (f'<function position="{position}" type="{kind}">' + (f'<input name="{input_name}"{mark}/>')
+            + (f'<output name="{output_name}"{mark}/>' if output_name else "") + "</function>")
+
+
+class Cells(Network):
+    """A PROGRAM whose networks are rows of cells: contacts, lines and boxes in series and in parallel, with coils behind them."""
+
+    def __init__(self, draw, name):
+        super().__init__(draw, name)
+        self.networks = []
+
+    def contact(self):
+        name, kind = self.draw.choice(BOOLS + ["b0", "b1", "b2"]), self.draw.choice(["open", "open", "closed", "positive transition", "negative transition"])
+        if kind.endswith("transition"):
+            before, now = self.own("BOOL"), self.own("BOOL")
+            self.statements.append(f"{now} := {f'{name} AND NOT {before}' if kind[0] == 'p' else f'{before} AND NOT {name}'}; {before} := {name};")
+            text = now
+        else:
+            text = f"(NOT {name})" if kind == "closed" else name
+        return [[f'<contact type="{kind}" name="{name}"/>']], text
+
+    def sum(self):
+        """A box with EN, whose ENO leads on; it is written when what leads to it is known."""
+        target, a, b = self.draw.choice(["v0", "v1", "v2"]), self.draw.choice(NUMBERS), self.draw.choice(NUMBERS + ["3"])
+        rows = [[LINE, function("ADD", "top", "EN", "ENO", True), LINE],
+                [f'<analog type="input" name="{a}"/>', function("ADD", "middle", "", "4"), f'<analog type="output" name="{target}"/>'],
+                [f'<analog type="input" name="{b}"/>', function("ADD", "bottom"), EMPTY]]
+        return rows, ("sum", f"{target} := {a} + {b};")
+
+    def compare(self):
+        """It begins at the rail."""
+        name, a, b = self.draw.choice(list(SIGNS)), self.draw.choice(NUMBERS), self.draw.choice(NUMBERS + ["3"])
+        return [[f'<analog type="input" name="{a}"/>', function(name, "top", "IN1", "1")],
+                [f'<analog type="input" name="{b}"/>', function(name, "bottom", "IN2")]], f"({a} {SIGNS[name]} {b})"
+
+    def series(self, left, right):
+        (a, text_a), (b, text_b) = left, right
+        height, width = max(len(a), len(b)), wide(a[0])
+        a = widened(a, height, width)
+        for row in range(1, len(b)):
+            a[row][-1] = joined(a[row][-1])
+        return [x + y for x, y in zip(a, widened(b, height, wide(b[0])))], ("and", text_a, text_b)
+
+    def parallel(self, above, below):
+        (a, text_a), (b, text_b) = above, below
+        width = max(wide(a[0]), wide(b[0]))
+        rows = widened(a, len(a), width) + widened(b, len(b), width)
+        for row in range(1, len(a) + 1):
+            rows[row][-1] = joined(rows[row][-1])
+        return rows, ("or", text_a, text_b)
+
+    def part(self, depth, is_first):
+        kind = self.draw.random()
+        if is_first and kind < 0.15:
+            return self.compare()
+        if kind < 0.25 and depth < 2:
+            return self.sum()
+        if depth == 0 or kind < 0.45:
+            return self.contact()
+        make = self.draw.choice([self.series, self.parallel])
+        first = self.part(depth - 1, is_first)
+        return make(first, self.part(depth - 1, is_first and make == self.parallel))
+
+    def value(self, text, left):
+        """What comes out of a part that `left` leads to; boxes do their work, from left to right."""
+        if isinstance(text, str):
+            return f"({left} AND {text})"
+        if text[0] == "sum":
+            self.sums.append(f"IF {left} THEN {text[1]} END_IF")
+            return left
+        if text[0] == "and":
+            return self.value(text[2], self.value(text[1], left))
+        return f"({self.value(text[1], left)} OR {self.value(text[2], left)})"
+
+    def network(self):
+        rows, text = self.part(2, True)
+        self.sums = []
+        value = self.own("BOOL")
+        power = self.value(text, "TRUE")
+        if len(self.sums) > 1:
+            return self.network()  # which of them comes first is a matter of columns
+        self.statements += [f"{value} := {power};"] + self.sums
+        coils = self.draw.randint(1, 3)
+        rows = widened(rows, max(len(rows), coils), wide(rows[0]))
+        for row in range(len(rows)):
+            if row >= coils:
+                rows[row].append(EMPTY)
+                continue
+            if row > 0:
+                rows[row][-1] = joined(rows[row][-1])
+            name, kind = self.draw.choice(["b0", "b1", "b2"]), self.draw.choice(["open", "open", "negated", "set", "reset"])
+            rows[row].append(f'<coil type="{kind}" name="{name}"/>')
+            self.statements.append(f"IF {value} THEN {name} := {'TRUE' if kind == 'set' else 'FALSE'}; END_IF" if kind in ("set", "reset")
+                                   else f"{name} := {'NOT ' if kind == 'negated' else ''}{value};")
+        self.write(rows)
+
+    def timer(self):
+        name, instance = self.draw.choice(["TON", "TOF", "TP"]), self.instance("TON")
+        self.declared[-1] = (instance, name)
+        contact, text = self.contact()
+        target = self.draw.choice(["b0", "b1", "b2"])
+        self.write([[EMPTY, f'<functionblock position="header" name="{instance}" type="{name}"/>', EMPTY],
+                    [contact[0][0], f'<functionblock position="top" type="{name}"><input name="IN"/><output name="Q"/></functionblock>',
+                     f'<coil type="open" name="{target}"/>'],
+                    ['<analog type="input" name="T#25ms"/>',
+                     f'<functionblock position="bottom" type="{name}"><input name="PT"/><output name="ET"/></functionblock>', EMPTY]])
+        self.statements.append(f"{instance}(IN := {text}, PT := T#25ms); {target} := {instance}.Q;")
+
+    def write(self, rows):
+        self.networks.append('<network label="" commented="0">\n' + "\n".join(f"<row>{''.join(row)}</row>" for row in rows) + "\n</network>\n")
+
+    def xml(self, _):
+        return "PROGRAM _CYCLIC\n<?xml version=\"1.0\"?>\n<networks maxcolumn=\"0\">\n" + "".join(self.networks) + "</networks>\nEND_PROGRAM\n"
+
+
+def cells(draw, name):
+    net = Cells(draw, name)
+    for _ in range(draw.randint(1, 4)):
+        net.timer() if draw.random() < 0.2 else net.network()
+    return net
+
+
+def write_folders(folder, nets):
+    for net in nets:
+        of = folder / "Logical" / net.name
+        of.mkdir(parents=True, exist_ok=True)
+        (of / "IEC.prg").write_text('<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Variables.var</File>'
+                                    "<File>Cyclic.ld</File></Files></Program>\n")
+        (of / "Variables.var").write_text("VAR\n" + "".join(f"{n} : {k};\n" for n, k in net.declared) + "END_VAR\n")
+        (of / "Cyclic.ld").write_text(net.xml("LD"))
+    return "Logical"
+
+
 def write_project(folder, nets):
     for net in nets:
         (folder / f"{net.name}.TcPOU").write_text(net.xml("NWL"))
@@ -649,9 +804,10 @@ with tempfile.TemporaryDirectory() as temporary:
     (folder / "driver.st").write_text(DRIVER)
     while done < networks:
         draw = random.Random(f"{seed} {done}")
-        language, make = (("LD", ladder), ("FBD", diagram), ("IL", instructions), ("NWL", trees))[done // batch % 4]
+        language, make = (("LD", ladder), ("FBD", diagram), ("IL", instructions), ("NWL", trees), ("rows", cells))[done // batch % 5]
         nets = [make(draw, f"Net{i}") for i in range(batch)]
-        drawn_as = write_project(folder, nets) if language == "NWL" else write_export(folder, language, nets)
+        drawn_as = (write_project(folder, nets) if language == "NWL" else write_folders(folder, nets) if language == "rows"
+                    else write_export(folder, language, nets))
         (folder / "said.st").write_text("".join(net.text() for net in nets))
         a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", "said.st", nets)
         if a != b:
@@ -659,7 +815,8 @@ with tempfile.TemporaryDirectory() as temporary:
             columns = [j for j, (x, y) in enumerate(zip(a[first].split(b","), b[first].split(b","))) if x != y]
             net = nets[(columns[0] - 1) // 6]
             print(net.xml(language), net.text(), sep="\n")
-            one = f"{net.name}.TcPOU" if language == "NWL" else write_export(folder, language, [net], "one.xml")
+            one = (f"{net.name}.TcPOU" if language == "NWL" else f"Logical/{net.name}/IEC.prg" if language == "rows"
+                   else write_export(folder, language, [net], "one.xml"))
             subprocess.run([lineshaft, "show", one], cwd=folder)
             sys.exit(f"seed {seed}, networks from {done} on: line {first} differs in columns {columns}: {net.name}")
         changing = len(set(a[1:]))

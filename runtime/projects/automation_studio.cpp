@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/projects/drawings/grids.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
@@ -55,6 +56,8 @@ class IecProgram {
         text.write(fmt::format("PROGRAM {0}{1}{0}\n", quote, name), place);
         text.append(variables_);
         if (has_start_) text.write("VAR _has_started : BOOL; END_VAR\n", place);
+        if (!made_.declarations().empty())
+            text.write("VAR\n" + made_.declarations() + "END_VAR\n", place);
         text.append(actions_);
         if (has_start_)
             text.write("IF NOT _has_started THEN _has_started := TRUE; _INIT(); END_IF\n", place);
@@ -90,6 +93,7 @@ class IecProgram {
         const Mark mark = list_.mark_of_tag(file);
         const std::string ending = lower(fs::path(named).extension().string());
         if (ending == ".uam") return;  // which methods OPC UA sees
+        if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named);
             if (const auto path = to_.resolve(path_of(named), mark, to_.out))
@@ -110,8 +114,8 @@ class IecProgram {
 
     void refuse(const Mark& mark, const std::string& named) {
         to_.out.add(code::not_supported, mark,
-                    fmt::format("'{}' is not Structured Text, and nothing else is read of a "
-                                "program of Automation Studio",
+                    fmt::format("'{}' is neither Structured Text nor a ladder, and nothing else is "
+                                "read of a program of Automation Studio",
                                 named),
                     "convert it to Structured Text, or leave it out");
     }
@@ -140,14 +144,67 @@ class IecProgram {
     }
 
     void add_program(const PlacedFile& file, const st::Token& name, std::size_t end) {
-        const std::size_t begin = name.place.end;
-        if (st::same_name(name.place.text(), "_exit")) return;
-        if (!st::same_name(name.place.text(), "_init")) return copy(body_, file, begin, end);
+        Excerpts body;
+        copy(body, file, name.place.end, end);
+        put_program(name.place.text(), body, file.mark({name.place.begin, name.place.end}));
+    }
+
+    void put_program(std::string_view name, const Excerpts& body, const Mark& place) {
+        if (st::same_name(name, "_exit")) return;
+        if (!st::same_name(name, "_init")) return body_.append(body);
         has_start_ = true;
-        const Mark place = file.mark({name.place.begin, name.place.end});
-        actions_.write("ACTION _INIT:\n", place);
-        copy(actions_, file, begin, end);
+        put_action(name, body, place);
+    }
+
+    void put_action(std::string_view name, const Excerpts& body, const Mark& place) {
+        actions_.write(fmt::format("ACTION {}:\n", name), place);
+        actions_.append(body);
         actions_.write("END_ACTION\n", place);
+    }
+
+    /// Each PROGRAM and ACTION of a `.ld`: its first line, and then what is drawn.
+    void add_ladders(const std::string& named, const Mark& mark) {
+        constexpr std::string_view begin_of_all = "<networks", end_of_all = "</networks>";
+        const auto path = to_.resolve(path_of(named), mark, to_.out);
+        const auto source =
+            path ? read_source(*path, to_.out, mark, {.bytes = XmlLimits{}.bytes}) : nullptr;
+        if (!source) return;
+        const std::string& text = source->text;
+        for (std::size_t from = 0;;) {
+            const std::size_t begin = text.find(begin_of_all, from);
+            const std::size_t last = text.find(end_of_all, begin);
+            if (last == text.npos) break;
+            const std::size_t end = last + end_of_all.size();
+            add_ladder(*source, {from, begin}, {begin, end});
+            from = end;
+        }
+    }
+
+    void add_ladder(const SourceFile& source, Part heading, Part drawn) {
+        SourceFile alone = source;
+        for (std::size_t i = 0; i < alone.text.size(); ++i)
+            if ((i < drawn.begin || i >= drawn.end) && alone.text[i] != '\n') alone.text[i] = ' ';
+        const auto file =
+            XmlFile::parse(std::make_shared<const SourceFile>(std::move(alone)), to_.out);
+        if (!file) return;
+        const Excerpts body = text_of_grid(*file, to_.out, made_, file->root());
+        const Mark place = file->mark_of_tag(file->root());
+        const std::string_view before = std::string_view(source.text).substr(heading.begin);
+        const auto name_behind = [&](std::string_view word) {
+            const std::size_t at = before.substr(0, heading.end - heading.begin).rfind(word);
+            if (at == before.npos) return std::string_view();
+            std::string_view name = before.substr(at + word.size());
+            name.remove_prefix(std::min(name.find_first_not_of(' '), name.size()));
+            return name.substr(0, name.find_first_of(" :\r\n"));
+        };
+        if (const auto program = name_behind("PROGRAM "); !program.empty())
+            put_program(program, body, place);
+        else if (const auto action = name_behind("ACTION "); !action.empty())
+            put_action(action, body, place);
+        else
+            to_.out.add(code::not_supported, place,
+                        "what is drawn here is neither a PROGRAM nor an ACTION",
+                        "write it in Structured Text");
     }
 
     static void copy(Excerpts& to, const PlacedFile& file, std::size_t begin, std::size_t end) {
@@ -158,6 +215,7 @@ class IecProgram {
     const XmlFile& list_;
     const Reading& to_;
     Excerpts variables_, actions_, body_;
+    MadeVariables made_;
     bool has_start_ = false;
 };
 

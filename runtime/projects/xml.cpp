@@ -124,7 +124,12 @@ std::unique_ptr<XmlFile> XmlFile::read(const std::string& path, Diagnostics& out
     if (!bytes) return nullptr;
     std::string text = as_utf8(marked_utf16(bytes->text));
     if (text.starts_with(utf8_byte_order_mark)) text.erase(0, utf8_byte_order_mark.size());
-    const auto file = std::make_shared<const SourceFile>(SourceFile{path, std::move(text)});
+    return parse(std::make_shared<const SourceFile>(SourceFile{path, std::move(text)}), out,
+                 limits);
+}
+
+std::unique_ptr<XmlFile> XmlFile::parse(std::shared_ptr<const SourceFile> file, Diagnostics& out,
+                                        const XmlLimits& limits) {
     const Mark start{file, 1, 1, 1};
     const auto count = [&](char c) {
         return static_cast<std::size_t>(std::ranges::count(file->text, c));

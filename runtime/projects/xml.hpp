@@ -30,6 +30,10 @@ class XmlFile : public PlacedFile {
     static std::unique_ptr<XmlFile> read(const std::string& path, Diagnostics& out, Mark where = {},
                                          const XmlLimits& limits = {});
 
+    /// The same of a text that is read already.
+    static std::unique_ptr<XmlFile> parse(std::shared_ptr<const SourceFile> file, Diagnostics& out,
+                                          const XmlLimits& limits = {});
+
     pugi::xml_node root() const { return document_.document_element(); }
 
     /// The element's tag, from `<` to its name's end.

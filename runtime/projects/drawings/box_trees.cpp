@@ -18,22 +18,6 @@ namespace {
 constexpr int deepest_tree = 400;
 constexpr std::size_t longest_text = 1U << 16;
 
-/// An operator that stands between its operands; empty: a function.
-std::string_view infix_of(std::string_view box) {
-    static constexpr std::pair<std::string_view, std::string_view> all[] = {
-        {"xor", " XOR "}, {"add", " + "},   {"sub", " - "}, {"mul", " * "},
-        {"div", " / "},   {"mod", " MOD "}, {"gt", " > "},  {"ge", " >= "},
-        {"lt", " < "},    {"le", " <= "},   {"eq", " = "},  {"ne", " <> "}};
-    for (const auto& [name, sign] : all)
-        if (st::same_name(name, box)) return sign;
-    return {};
-}
-
-bool compares(std::string_view box) {
-    static constexpr std::string_view all[] = {"gt", "ge", "lt", "le", "eq", "ne"};
-    return std::ranges::any_of(all, [&](auto name) { return st::same_name(name, box); });
-}
-
 /// `INT`, `Lib.Type`: as the type of a variable.
 bool is_type_name(std::string_view type) {
     return !type.empty() && shape_of(type) == Value::Form::atom && !is_digit(type.front());
@@ -104,42 +88,13 @@ class BoxTrees {
         out_.add(code::not_supported, place, std::move(why), std::move(help));
     }
 
-    Value words(std::string_view text, const Mark& place, std::string type = {}) const {
-        Value made{.text = {}, .form = shape_of(text), .type = std::move(type)};
-        made.text.write(text, place);
-        return made;
-    }
-
-    Value always(const Mark& place) const {
-        Value made = words("TRUE", place, "BOOL");
-        made.is_always = true;
-        return made;
-    }
-
-    void write_if(const Value& condition, const Mark& place) {
-        if (condition.is_empty() || condition.is_always) return;
-        now_.write("IF ", place);
-        now_.append(condition.text);
-        now_.write(" THEN\n", place);
-    }
-    void write_end_if(const Value& condition, const Mark& place) {
-        const bool is_open = !condition.is_empty() && !condition.is_always;
-        now_.write(is_open ? "END_IF\n" : "", place);
-    }
-
-    Value kept_in(const std::string& variable, const Value& value, const Mark& place) {
-        now_.write(variable + " := ", place);
-        now_.append(value.text);
-        now_.write(";\n", place);
-        return words(variable, place, value.type);
-    }
     /// Into a variable, so that it may be taken again; as it is, where its type is not known.
     Value fixed(const Value& value, const Mark& place) {
         const std::string_view text = value.text.text();
         const bool is_made = value.form == Value::Form::atom &&
                              (text.starts_with("_wire") || text.starts_with("_edge"));
         if (value.is_always || is_made || !is_type_name(value.type)) return value;
-        return kept_in(variables_.make("_wire", value.type), value, place);
+        return kept_in(now_, variables_.make("_wire", value.type), value, place);
     }
 
     void add_network(pugi::xml_node network) {
@@ -303,9 +258,9 @@ class BoxTrees {
         due = fixed(due, place);
         const std::string found = variables_.make("_wire", "BOOL");
         now_.write(found + " := FALSE;\n", place);
-        write_if(due, place);
-        kept_in(found, any_of(rest, {}, place), place);
-        write_end_if(due, place);
+        write_if(now_, due, place);
+        kept_in(now_, found, any_of(rest, {}, place), place);
+        write_end_if(now_, due, place);
         const Value known = others.is_empty() ? Value{} : both(before, others, place);
         return either(known, words(found, place, "BOOL"), place);
     }
@@ -360,10 +315,10 @@ class BoxTrees {
         const Value to = written(target);
         if (to.is_empty()) return;
         if (marks.is_set) {
-            write_if(value, place);
+            write_if(now_, value, place);
             now_.append(to.text);
             now_.write(marks.is_negated ? " := FALSE;\n" : " := TRUE;\n", place);
-            return write_end_if(value, place);
+            return write_end_if(now_, value, place);
         }
         now_.append(to.text);
         now_.write(" := ", place);
@@ -375,9 +330,9 @@ class BoxTrees {
         if (is_jump && jumps_.number_of(label) == 0)
             return out_.add(code::not_declared, place,
                             fmt::format("there is no label '{}' in this body", label));
-        write_if(when, place);
+        write_if(now_, when, place);
         now_.write(is_jump ? jumps_.leaving(label) + "\n" : "RETURN;\n", place);
-        write_end_if(when, place);
+        write_end_if(now_, when, place);
         if (is_jump) jumps_.jump(label, std::exchange(now_, {}), place);
     }
 
@@ -435,7 +390,7 @@ class BoxTrees {
         const pugi::xml_node text =
             Archive::member(Archive::member(snippet, "TextDocument"), "TextBlobForSerialisation");
         const std::vector<Part> parts = file_.texts(text);
-        write_if(box.enabled, box.place);
+        write_if(now_, box.enabled, box.place);
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const std::size_t quote = file_.text(parts[i]).size() > 1 ? 1 : 0;
             const std::size_t begin = parts[i].begin + (i == 0 ? quote : 0);
@@ -443,7 +398,7 @@ class BoxTrees {
             file_.copy(now_, {begin, end});
         }
         now_.write("\n", box.place);
-        write_end_if(box.enabled, box.place);
+        write_end_if(now_, box.enabled, box.place);
         return enabled_of(box);
     }
 
@@ -459,12 +414,12 @@ class BoxTrees {
                             box.place);
             return made;
         };
-        write_if(box.enabled, box.place);
+        write_if(now_, box.enabled, box.place);
         now_.append(called.text);
         now_.append(arguments_of(box, true));
         now_.write(";\n", box.place);
         for (std::size_t i = box.result(); i < box.takers.size(); ++i) give(box, i, output(i));
-        write_end_if(box.enabled, box.place);
+        write_end_if(now_, box.enabled, box.place);
         if (box.has_eno) give(box, 0, enabled_of(box));
         return box.main() < box.outputs.size() ? output(box.main()) : enabled_of(box);
     }
@@ -511,15 +466,15 @@ class BoxTrees {
         const bool is_result_taken = is_taken && box.main() == result;
         Value value = result_of(box);
         if (is_assigned) {
-            write_if(box.enabled, box.place);
+            write_if(now_, box.enabled, box.place);
             give(box, result, value);
-            write_end_if(box.enabled, box.place);
+            write_end_if(now_, box.enabled, box.place);
             if (is_result_taken) value = written(box.takers[result]);
         } else if (!is_result_taken && !is_operator(box)) {
-            write_if(box.enabled, box.place);
+            write_if(now_, box.enabled, box.place);
             now_.append(value.text);
             now_.write(";\n", box.place);
-            write_end_if(box.enabled, box.place);
+            write_end_if(now_, box.enabled, box.place);
         }
         if (box.has_eno) give(box, 0, enabled_of(box));
         if (!is_result_taken) return enabled_of(box);
@@ -536,9 +491,9 @@ class BoxTrees {
             return value;
         }
         const std::string name = variables_.make("_wire", value.type);
-        write_if(box.enabled, box.place);
-        const Value kept = kept_in(name, value, box.place);
-        write_end_if(box.enabled, box.place);
+        write_if(now_, box.enabled, box.place);
+        const Value kept = kept_in(now_, name, value, box.place);
+        write_end_if(now_, box.enabled, box.place);
         return kept;
     }
 

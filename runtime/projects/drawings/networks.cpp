@@ -17,8 +17,13 @@ constexpr std::size_t longest_value = 1U << 16;
 
 std::string MadeVariables::make(std::string_view prefix, std::string_view type) {
     std::string name = this->name(prefix);
-    declarations_ += fmt::format("    {} : {};\n", name, type);
+    declare(name, type);
     return name;
+}
+
+void MadeVariables::declare(std::string_view name, std::string_view type) {
+    const std::string line = fmt::format("    {} : {};\n", name, type);
+    if (declarations_.find(line) == declarations_.npos) declarations_ += line;
 }
 
 NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)

@@ -19,6 +19,8 @@ class MadeVariables {
   public:
     /// A new one: `_wire1`.
     std::string make(std::string_view prefix, std::string_view type);
+    /// One of that name, once.
+    void declare(std::string_view name, std::string_view type);
     /// Of what is no variable: `_action2`.
     std::string name(std::string_view prefix) { return fmt::format("{}{}", prefix, ++count_); }
     /// `_wire1 : BOOL;` and so on; empty: none.

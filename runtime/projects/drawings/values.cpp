@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
 
@@ -50,6 +51,52 @@ Value negated(const Value& a, const Mark& place) {
     made.text.write("NOT ", place);
     made.text.append(enclosed(a, place));
     return made;
+}
+
+Value words(std::string_view text, const Mark& place, std::string type) {
+    Value made{.text = {}, .form = shape_of(text), .type = std::move(type)};
+    made.text.write(text, place);
+    return made;
+}
+
+Value always(const Mark& place) {
+    Value made = words("TRUE", place, "BOOL");
+    made.is_always = true;
+    return made;
+}
+
+void write_if(Excerpts& to, const Value& condition, const Mark& place) {
+    if (condition.is_empty() || condition.is_always) return;
+    to.write("IF ", place);
+    to.append(condition.text);
+    to.write(" THEN\n", place);
+}
+
+void write_end_if(Excerpts& to, const Value& condition, const Mark& place) {
+    const bool is_open = !condition.is_empty() && !condition.is_always;
+    to.write(is_open ? "END_IF\n" : "", place);
+}
+
+Value kept_in(Excerpts& to, const std::string& variable, const Value& value, const Mark& place) {
+    to.write(variable + " := ", place);
+    to.append(value.text);
+    to.write(";\n", place);
+    return words(variable, place, value.type);
+}
+
+std::string_view infix_of(std::string_view function) {
+    static constexpr std::pair<std::string_view, std::string_view> all[] = {
+        {"xor", " XOR "}, {"add", " + "},   {"sub", " - "}, {"mul", " * "},
+        {"div", " / "},   {"mod", " MOD "}, {"gt", " > "},  {"ge", " >= "},
+        {"lt", " < "},    {"le", " <= "},   {"eq", " = "},  {"ne", " <> "}};
+    for (const auto& [name, sign] : all)
+        if (st::same_name(name, function)) return sign;
+    return {};
+}
+
+bool compares(std::string_view function) {
+    static constexpr std::string_view all[] = {"gt", "ge", "lt", "le", "eq", "ne"};
+    return std::ranges::any_of(all, [&](auto name) { return st::same_name(name, function); });
 }
 
 Value::Form shape_of(std::string_view expression) {

@@ -26,6 +26,20 @@ Value both(Value a, Value b, const Mark& place);
 Value either(Value a, Value b, const Mark& place);
 Value negated(const Value& a, const Mark& place);
 
+Value words(std::string_view text, const Mark& place, std::string type = {});
+/// TRUE, as from a power rail.
+Value always(const Mark& place);
+
+/// `IF condition THEN` and its end; nothing where that is empty or always TRUE.
+void write_if(Excerpts& to, const Value& condition, const Mark& place);
+void write_end_if(Excerpts& to, const Value& condition, const Mark& place);
+/// `variable := value;`, and the variable.
+Value kept_in(Excerpts& to, const std::string& variable, const Value& value, const Mark& place);
+
+/// An operator that stands between its operands; empty: a function.
+std::string_view infix_of(std::string_view function);
+bool compares(std::string_view function);
+
 /// Of an expression as it is written at an element.
 Value::Form shape_of(std::string_view expression);
 

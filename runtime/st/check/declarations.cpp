@@ -78,6 +78,12 @@ Token name_of_global(Checking& c, const Declaration& declared) {
     return is_library(declared.name) ? declared.name : name_with_namespace(c, declared.name);
 }
 
+/// A PROGRAM of B&R has the name of its folder, which is none of its language.
+bool is_folder(const Pou& pou) {
+    return pou.kind == PouKind::program && !pou.name.place.dialect().programs_are_named &&
+           pou.name.place.dialect().capitals_count;
+}
+
 /// `Trace : Trace;`, where CODESYS tells by the place which is meant.
 bool is_beside_a_type(Checking& c, const Token& name) {
     const Dialect& dialect = name.place.dialect();
@@ -85,8 +91,7 @@ bool is_beside_a_type(Checking& c, const Token& name) {
         return false;
     const Routine* block = find_in(c.users.routines, name.text);
     const bool is_type = block && block->pou->kind == PouKind::function_block;
-    const bool is_folder = block && !block->is_function() && !dialect.programs_are_named;
-    return is_type || is_folder || c.users.types.contains(name.text);
+    return is_type || (block && is_folder(*block->pou)) || c.users.types.contains(name.text);
 }
 
 /// `a` beside `A`, where capitals count.
@@ -407,8 +412,12 @@ void collect_names(Checking& c) {
         Routine* first = find_in(all.routines, full_name.text);
         const bool is_other = pou->kind == PouKind::function &&
                               is_overload(*pou, first, all.overloads, full_name.text);
-        const bool added = !is_other && !is_told_by_capitals(c, full_name, all.places) &&
-                           is_new_name(c, full_name, all.places);
+        const bool is_beside = first && (is_folder(*pou) || is_folder(*first->pou));
+        if (is_beside && !is_folder(*pou)) all.routines.erase(full_name.text);
+        const bool added =
+            is_beside ? !is_folder(*pou)
+                      : !is_other && !is_told_by_capitals(c, full_name, all.places) &&
+                            is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);
