@@ -435,8 +435,9 @@ def check_named_programs():
             )
     twincat("named", "POU", "GVL_left", "FUNCTION GVL_left : INT\nVAR_INPUT a : INT; END_VAR\nVAR t : TON; END_VAR",
             "t(IN := TRUE, PT := T#0s); RETURN(a = 0); GVL_left := SEL(t.Q, 0, a);")
-    twincat("named", "POU", "Side", "PROGRAM Side\nVAR count : INT; END_VAR", "count := count + 1;")
-    twincat("named", "GVL", "Lists", "VAR_GLOBAL\n cells : ARRAY[0..3] OF Cell;\n other : Cell;\n plain : INT := 3;\nEND_VAR")
+    twincat("named", "POU", "Side", "PROGRAM Side\nVAR count : INT; END_VAR", "count := count + 1; sum := Lists.speed + More.speed;")
+    twincat("named", "GVL", "Lists", "VAR_GLOBAL\n cells : ARRAY[0..3] OF Cell;\n other : Cell;\n plain : INT := 3;\n speed : INT := 4;\nEND_VAR")
+    twincat("named", "GVL", "More", "VAR_GLOBAL\n speed : INT := 20;\n sum : INT;\nEND_VAR")
     twincat("named", "DUT", "Shade", "TYPE Shade : (dark := 5, light := 105, more := 10#106, none := 4000); END_TYPE")
     write("named/PlcTask.TcTTO", TASK)
     assert "ok  named\n" in run("check", "named")
@@ -444,9 +445,12 @@ def check_named_programs():
     text = (work / "named.yaml").read_text()
     assert "Side:" not in text, text
     write("named.yaml", text + "expect:\n  - {at: 5 ms, MAIN.got: 13}\n  - {at: end, MAIN.got: 313}\n  - {at: end, MAIN.seed: 106}\n"
-          "  - {at: 5 ms, MAIN.shade: dark}\n  - {at: end, MAIN.shade: light}\n")
+          "  - {at: 5 ms, MAIN.shade: dark}\n  - {at: end, globals.sum: 24}\n  - {at: end, MAIN.shade: light}\n")
     run("run", "named.yaml", "--quiet")
     run("run", "named.yaml", "--quiet", "--no-native")
+    twincat("named", "POU", "Side", "PROGRAM Side\nVAR count : INT; END_VAR", "count := count + speed; sum := More.speed;")
+    said = run("check", "named", code=2)
+    assert "error[L0909]: 'speed' stands in several lists" in said and "More.TcGVL" in said and "Lists.TcGVL" in said, said
 
 
 def check_lost_bases():

@@ -246,11 +246,10 @@ class BoxTrees {
 
     /// Branches with boxes are left out where nothing leads to them, or another one is TRUE
     /// already.
-    Value short_circuit(const Value& before, std::vector<pugi::xml_node> trees, const Mark& place) {
-        const auto boxes = std::ranges::stable_partition(
-            trees, [&](pugi::xml_node tree) { return !has_box(tree); });
-        const std::vector<pugi::xml_node> plain(trees.begin(), boxes.begin());
-        const std::vector<pugi::xml_node> rest(boxes.begin(), boxes.end());
+    Value short_circuit(const Value& before, const std::vector<pugi::xml_node>& trees,
+                        const Mark& place) {
+        std::vector<pugi::xml_node> plain, rest;
+        for (const pugi::xml_node tree : trees) (has_box(tree) ? rest : plain).push_back(tree);
         const Value others = any_of(plain, {}, place);
         Value due = others.is_empty() ? before : both(before, negated(others, place), place);
         if (due.is_empty() || due.is_always) return any_of(rest, {}, place);

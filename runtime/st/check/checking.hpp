@@ -104,6 +104,8 @@ struct Checking {
     /// Variables of B&R whose names differ from another's beside them in capitals alone, by whose
     /// they are and their names.
     std::map<std::pair<const Pou*, std::string_view>, Variable*> by_capitals = {};
+    /// Names of global variables that stand in several lists, the first two of them.
+    NameMap<std::pair<Token, Token>> in_several_lists = {};
     NameMap<GlobalConstant> constants = {};  ///< by name; of a block as `Block.constant`
     std::deque<DeclarationBlock> constants_of_blocks = {};  ///< as lists of globals of their names
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so

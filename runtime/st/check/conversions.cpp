@@ -234,9 +234,9 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     return become(c, e, to, {.integer = value});
 }
 
-/// The signed type that holds a constant which `typed` does not, and all of that; null if there is
-/// none, or none is needed.
-const Type* wider_for(const Expression& constant, const Type& typed) {
+/// The type that holds a constant which `typed` does not, and all of that: what is expected, or a
+/// signed one. Null if there is none, or none is needed.
+const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected) {
     const Wide value = constant.constant.integer;
     const bool is_more_bits =
         constant.type->kind == Kind::any_bits && value >= Wide{1} << typed.plain().bits;
@@ -246,7 +246,8 @@ const Type* wider_for(const Expression& constant, const Type& typed) {
         return value >= smallest(type) && value <= largest(type);
     };
     if (holds(typed.plain())) return nullptr;
-    for (const Type* wider : {&dint_type, &lint_type})
+    const Type* const due = expected && expected->is_integer() ? &expected->plain() : &dint_type;
+    for (const Type* wider : {due, &dint_type, &lint_type})
         if (holds(*wider) && widens(typed, *wider)) return wider;
     return nullptr;
 }
@@ -408,7 +409,8 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         return common_type(typed, real_type);
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
-    if (const Type* wider = a.is_any() ? wider_for(*left, b) : wider_for(*right, a))
+    if (const Type* wider =
+            a.is_any() ? wider_for(*left, b, expected) : wider_for(*right, a, expected))
         if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
     const auto reckons_in = [&](const Type& type, const Expression& constant) {
         return common && expected && expected->is_integer() && !widens(*common, *expected) &&

@@ -105,12 +105,22 @@ bool is_other_by_capitals(Checking& c, const Token& name) {
            !c.by_capitals.contains({known->of, name.text});
 }
 
+/// TwinCAT's lists of globals may have the same names: the variable that was the first; null: none.
+const Variable* in_another_list(Checking& c, const DeclarationBlock& block, const Token& name) {
+    const Variable* known = find_in(c.globals, name.text);
+    const bool is_of_list = known && !block.list.empty() && name.place.dialect().is_loose &&
+                            known->section == Section::global;
+    return is_of_list && known->name.place.source != name.place.source ? known : nullptr;
+}
+
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = name_of_global(c, declared);
-    if (block.is_qualified_only) name.text = in_list;
+    const Variable* const first = in_another_list(c, block, name);
+    if (first) c.in_several_lists.emplace(name.text, std::pair(first->name, declared.name));
+    if (first || block.is_qualified_only) name.text = in_list;
     const bool is_other = is_other_by_capitals(c, name);
     if (!is_other && !is_beside_a_type(c, name) && !is_new_name(c, name, c.users.places))
         return nullptr;
@@ -414,10 +424,10 @@ void collect_names(Checking& c) {
                               is_overload(*pou, first, all.overloads, full_name.text);
         const bool is_beside = first && (is_folder(*pou) || is_folder(*first->pou));
         if (is_beside && !is_folder(*pou)) all.routines.erase(full_name.text);
-        const bool added =
-            is_beside ? !is_folder(*pou)
-                      : !is_other && !is_told_by_capitals(c, full_name, all.places) &&
-                            is_new_name(c, full_name, all.places);
+        const bool added = is_beside
+                               ? !is_folder(*pou)
+                               : !is_other && !is_told_by_capitals(c, full_name, all.places) &&
+                                     is_new_name(c, full_name, all.places);
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);

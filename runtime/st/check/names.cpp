@@ -167,6 +167,23 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
     return become_value(c, e, enumeration, found - enumeration.values.data());
 }
 
+namespace {
+
+/// A global variable that is named without its list, of which there are several.
+bool is_ambiguous(Checking& c, const Token& token, const Variable& variable) {
+    const auto lists = c.in_several_lists.find(token.text);
+    if (lists == c.in_several_lists.end() || variable.section != Section::global) return false;
+    const auto& [first, second] = lists->second;
+    const Mark one = first.place.mark(), other = second.place.mark();
+    c.fail(code::declared_twice, token.place,
+           fmt::format("'{}' stands in several lists", token.text),
+           fmt::format("write the list's name and '.' before it: {}:{} and {}:{}", one.file->path,
+                       one.line, other.file->path, other.line));
+    return true;
+}
+
+}  // namespace
+
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
@@ -185,6 +202,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         e = make_text(c, *e);
         return check(c, e, expected);
     }
+    if (variable && is_ambiguous(c, token, *variable)) return nullptr;
     if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
