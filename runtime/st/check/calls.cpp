@@ -433,6 +433,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             return check_test_statement(c, *e, as_statement);
         if (is_function)
             if (const auto given = check_reference_call(c, e, expected)) return *given;
+        if (is_function)
+            if (const auto given = check_place_call(c, e)) return *given;
         if (is_function) return check_standard_function(c, e, expected);
     }
     const Type* type = check(c, e->operands[0]);

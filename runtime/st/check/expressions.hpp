@@ -13,6 +13,8 @@ const Type* check(Checking& c, Expression*& e, const Type* expected = nullptr);
 
 /// A literal as it is written: notes its value. A number has no type of its own yet.
 const Type* check_literal(Checking& c, Expression*& e);
+/// `__POUNAME()` and `__POSITION()`, texts that CODESYS makes of where they stand. Empty: neither.
+std::optional<const Type*> check_place_call(Checking& c, Expression*& e);
 /// `INT#5`, `Colour#red`.
 const Type* check_typed(Checking& c, Expression*& e);
 /// `DTL#2020-02-29-12:30:15` as its parts.

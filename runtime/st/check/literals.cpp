@@ -86,6 +86,17 @@ const Type* check_text(Checking& c, Expression& e) {
 
 }  // namespace
 
+std::optional<const Type*> check_place_call(Checking& c, Expression*& e) {
+    const std::string_view name = e->operands[0]->token.text;
+    const bool is_pou = same_name(name, "__pouname");
+    if ((!is_pou && !same_name(name, "__position")) || !e->arguments.empty()) return {};
+    const Mark mark = e->place.mark();
+    const std::string text = !is_pou    ? fmt::format("Line {}, Column {}", mark.line, mark.column)
+                             : c.routine ? c.routine->name
+                                         : std::string();
+    return become(c, e, string_type, {.text = text});
+}
+
 const Type* check_literal(Checking& c, Expression*& e) {
     switch (e->token.word) {
         case Word::integer:
