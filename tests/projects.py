@@ -341,6 +341,31 @@ def check_mapp():
     run("run", "mapp.yaml", "--quiet")
 
 
+def check_local_types():
+    """Programs of B&R have types, functions and constants for themselves, by the same names; what its tools make does not count."""
+    for name, size, value in (("Belt", 3, "TURN"), ("Press", 5, "PUSH")):
+        write(f"Local/Logical/{name}/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+              '<File Private="true">Types.typ</File><File Private="true">Variables.var</File><File Private="true">Functions.fun</File>'
+              "<File>Main.st</File></Files></Program>\n")
+        write(f"Local/Logical/{name}/Types.typ", f"TYPE\n\tStep : (WAIT, {value});\n\tList : STRUCT\n\t\tall : ARRAY[1..SIZE] OF INT;\n\t\tstep : Step;\n"
+              "\tEND_STRUCT;\nEND_TYPE\n")
+        write(f"Local/Logical/{name}/Variables.var", f"VAR CONSTANT\n\tSIZE : INT := {size};\nEND_VAR\nVAR\n\tlist : List;\n\tcount : INT;\n"
+              "\tis_there : BOOL;\nEND_VAR\n")
+        write(f"Local/Logical/{name}/Functions.fun", f"FUNCTION last_of_{name} : INT\nVAR_INPUT\n\tlist : REFERENCE TO List;\nEND_VAR\nEND_FUNCTION\n")
+        write(f"Local/Logical/{name}/Main.st", f"PROGRAM _CYCLIC\n\tlist.step := {value};\n\tlist.all[SIZE] := SIZE;\n\tcount := SIZEOF(list.all) / 2;\n"
+              f"\tis_there := list.step = {value};\nEND_PROGRAM\n")
+    write("Local/Logical/3rd/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Main.st</File></Files></Program>\n')
+    write("Local/Logical/3rd/Main.st", "PROGRAM _CYCLIC\nEND_PROGRAM\n")
+    write("Local/Logical/C/ANSIC.prg", '<Program SubType="ANSIC" xmlns="http://br-automation.co.at/AS/Program"/>\n')
+    write("Local/Logical/C/Variables.var", "VAR\n\tx : of_its_headers;\nEND_VAR\n")
+    write("Local/Temp/Objects/Main.var", "VAR\n\tx : of_a_tool;\nEND_VAR\n")
+    assert run("check", "Local").splitlines()[0] == "ok  Local"
+    run("new", "local", "--from", "Local")
+    write("local.yaml", (work / "local.yaml").read_text() + "expect:\n  - {at: end, Belt.count: 3}\n  - {at: end, Press.count: 5}\n"
+          "  - {at: end, Belt.is_there: true}\n  - {at: end, Press.is_there: true}\n")
+    run("run", "local.yaml", "--quiet")
+
+
 def check_apax():
     write("package/apax.yml", "name: p\n")
     write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
@@ -570,6 +595,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_nothing()
     check_automation_studio()
     check_mapp()
+    check_local_types()
     check_apax()
     check_solution()
     check_named_programs()

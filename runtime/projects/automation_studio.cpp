@@ -51,7 +51,10 @@ class IecProgram {
         for (const pugi::xml_node file : list_.root().child("Files").children("File")) add(file);
         const Mark place = list_.mark_of_tag(list_.root());
         const std::string name = folder().filename().string();
+        for (const auto& [path, mark] : types_) add_types(path, mark);
+        for (const auto& [path, mark] : functions_) add_functions(path, mark);
         Excerpts text;
+        text.append(usings_);
         const char* const quote = is_one_name(name) ? "" : "\"";
         text.write(fmt::format("PROGRAM {0}{1}{0}\n", quote, name), place);
         text.append(variables_);
@@ -96,7 +99,14 @@ class IecProgram {
         if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named);
-            if (const auto path = to_.resolve(path_of(named), mark, to_.out))
+            const auto path = to_.resolve(path_of(named), mark, to_.out);
+            const bool is_local = list_.plain(file.attribute("Private")) == "true";
+            if (!path) return;
+            if (is_local && ending == ".typ")
+                types_.emplace_back(*path, mark);
+            else if (is_local && ending == ".fun")
+                functions_.emplace_back(*path, mark);
+            else
                 read_sources(to_, *path, mark);
             return;
         }
@@ -105,10 +115,64 @@ class IecProgram {
         if (!source) return;
         const PlacedFile text(source);
         if (ending == ".var") {
+            add_constants(text);
             variables_.copy(text, {0, text.text().size()});
             variables_.write("\n", mark);
         } else {
             add_bodies(text);
+        }
+    }
+
+    /// `_Belt_Types`, of the folder and the file.
+    static std::string space_of(const std::string& path) {
+        std::string name = "_";
+        const fs::path file(path);
+        for (const fs::path& part : {file.parent_path().parent_path(), file.parent_path()})
+            name += part.filename().string() + "_";
+        name += file.stem().string();
+        for (char& c : name)
+            if (!is_letter(c) && !is_digit(c)) c = '_';
+        return name;
+    }
+
+    /// Types that it has for itself stand in a namespace of theirs, with the constants that it has.
+    void add_types(const std::string& path, const Mark& mark) {
+        const auto source = read_source(path, to_.out, mark);
+        if (!source) return;
+        const std::string space = space_of(path);
+        Excerpts text;
+        text.write(fmt::format("NAMESPACE {}\n", space), mark);
+        text.copy(PlacedFile(source), {0, source->text.size()});
+        text.append(constants_);
+        text.write("\nEND_NAMESPACE\n", mark);
+        to_.project.add(text.finish(path));
+        usings_.write(fmt::format("USING {};\n", space), mark);
+    }
+
+    /// Functions that it has for itself may name these types.
+    void add_functions(const std::string& path, const Mark& mark) {
+        const auto source = read_source(path, to_.out, mark);
+        if (!source) return;
+        Excerpts text;
+        text.append(usings_);
+        text.copy(PlacedFile(source), {0, source->text.size()});
+        to_.project.add(text.finish(path));
+    }
+
+    /// `VAR CONSTANT ... END_VAR` as constants beside all.
+    void add_constants(const PlacedFile& file) {
+        Diagnostics unread;
+        const st::Tokens found = st::read_tokens(file.file(), unread);
+        const auto& tokens = found.tokens;
+        for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
+            if (tokens[i].word != st::Word::var_ || tokens[i + 1].word != st::Word::constant_)
+                continue;
+            std::size_t last = i + 1;
+            while (last + 1 < tokens.size() && tokens[last].word != st::Word::end_var_) ++last;
+            const Mark place = file.mark({tokens[i].place.begin, tokens[i].place.end});
+            constants_.write("\nVAR_GLOBAL ", place);
+            constants_.copy(file, {tokens[i + 1].place.begin, tokens[last].place.end});
+            constants_.write("\n", place);
         }
     }
 
@@ -214,7 +278,8 @@ class IecProgram {
 
     const XmlFile& list_;
     const Reading& to_;
-    Excerpts variables_, actions_, body_;
+    Excerpts usings_, constants_, variables_, actions_, body_;
+    std::vector<std::pair<std::string, Mark>> types_, functions_;  ///< files that declare its own
     MadeVariables made_;
     bool has_start_ = false;
 };

@@ -104,6 +104,17 @@ bool is_database(const std::string& file) {
     return lower(std::move(first)).find("data_block") == std::string::npos;
 }
 
+/// What B&R's tools make beside `Logical`, and what a program in C has for itself.
+bool is_of_no_source(const std::string& file) {
+    std::error_code unknown;
+    const fs::path folder = fs::path(file).parent_path();
+    if (fs::exists(folder / "ANSIC.prg", unknown)) return true;
+    for (fs::path at = folder; at.has_filename(); at = at.parent_path())
+        if (at.filename() == "Temp" && fs::exists(at.parent_path() / "Logical", unknown))
+            return true;
+    return false;
+}
+
 /// `build/`, which an editor writes anew out of the `plc.xml` beside it.
 bool is_built(const std::string& file) {
     std::error_code unknown;
@@ -156,6 +167,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     std::erase_if(files, is_test_file);
     std::erase_if(files, is_database);
     std::erase_if(files, is_built);
+    std::erase_if(files, is_of_no_source);
     leave_to_projects(files);
     std::ranges::sort(files);
     return files;

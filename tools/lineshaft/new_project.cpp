@@ -71,6 +71,7 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
     std::vector<NewBlock> blocks;
     const auto add = [&](const BlockType& kind, const std::string& task) {
         std::string name(kind.name);
+        if (is_digit(name.front())) name.insert(0, "_");
         for (const NewBlock& other : blocks)
             if (other.name == name) name += "_" + task;
         blocks.push_back({name, std::string(kind.name), task});

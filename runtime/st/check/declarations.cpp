@@ -447,7 +447,8 @@ void collect_names(Checking& c) {
             if (block.constant && block.section == Section::global) {
                 const Checking::GlobalConstant constant{&block, declared};
                 c.constants.emplace(name_in_list(c, block, *declared), constant);
-                if (!block.is_qualified_only) c.constants.emplace(declared->name.text, constant);
+                if (!block.is_qualified_only)
+                    c.constants.emplace(name_of_global(c, *declared).text, constant);
             }
     for (const TypeDeclaration& declared : c.tree.types)
         if (NamedType* type = c.look_up(&Names::types, declared.name)) resolve_declared(c, *type);
