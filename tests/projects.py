@@ -354,7 +354,9 @@ def check_local_types():
         write(f"Local/Logical/{name}/Functions.fun", f"FUNCTION last_of_{name} : INT\nVAR_INPUT\n\tlist : REFERENCE TO List;\nEND_VAR\nEND_FUNCTION\n")
         write(f"Local/Logical/{name}/Main.st", f"PROGRAM _CYCLIC\n\tlist.step := {value};\n\tlist.all[SIZE] := SIZE;\n\tcount := SIZEOF(list.all) / 2;\n"
               f"\tis_there := list.step = {value};\nEND_PROGRAM\n")
-    write("Local/Logical/3rd/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Main.st</File></Files></Program>\n')
+    write("Local/Logical/3rd/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Main.st</File>'
+          '<File Private="true">Types.typ</File></Files></Program>\n')
+    write("Local/Logical/3rd/Types.typ", "(* none *)\n")
     write("Local/Logical/3rd/Main.st", "PROGRAM _CYCLIC\nEND_PROGRAM\n")
     write("Local/Logical/C/ANSIC.prg", '<Program SubType="ANSIC" xmlns="http://br-automation.co.at/AS/Program"/>\n')
     write("Local/Logical/C/Variables.var", "VAR\n\tx : of_its_headers;\nEND_VAR\n")

@@ -135,10 +135,17 @@ class IecProgram {
         return name;
     }
 
+    static bool has_types(const std::shared_ptr<const SourceFile>& file) {
+        Diagnostics unread;
+        const st::Tokens found = st::read_tokens(file, unread);
+        return std::ranges::any_of(
+            found.tokens, [](const st::Token& token) { return token.word == st::Word::type_; });
+    }
+
     /// Types that it has for itself stand in a namespace of theirs, with the constants that it has.
     void add_types(const std::string& path, const Mark& mark) {
         const auto source = read_source(path, to_.out, mark);
-        if (!source) return;
+        if (!source || !has_types(source)) return;
         const std::string space = space_of(path);
         Excerpts text;
         text.write(fmt::format("NAMESPACE {}\n", space), mark);
