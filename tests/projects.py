@@ -341,6 +341,20 @@ def check_mapp():
     run("run", "mapp.yaml", "--quiet")
 
 
+def check_softmotion():
+    """An axis of the device tree is one wherever it is named; a name that no pin of an axis is given is none."""
+    write("soft/A_panel.st", "PROGRAM A_panel\nVAR place : LREAL; stands : BOOL; END_VAR\nplace := Lift.fActPosition;\n"
+          "stands := Lift.nAxisState = SMC_AXIS_STATE.standstill;\nEND_PROGRAM\n")
+    write("soft/Main.st", "PROGRAM Main\nVAR power : MC_Power := (Enable := TRUE, bRegulatorOn := TRUE, bDriveStart := TRUE); inch : SMC_Inch; END_VAR\n"
+          "power(Axis := Lift);\ninch(Axis := Lift, InchForward := power.Status, Distance := 2.0, Velocity := 20.0);\nEND_PROGRAM\n")
+    run("new", "soft_motion", "--from", "soft")
+    write("soft_motion.yaml", (work / "soft_motion.yaml").read_text() +
+          "expect:\n  - {at: end, A_panel.place: 2, within: 1e-9}\n  - {at: end, A_panel.stands: true}\n")
+    run("run", "soft_motion.yaml", "--quiet")
+    write("soft/B_typo.st", "PROGRAM B_typo\nVAR place : LREAL; END_VAR\nplace := Lft.fActPosition;\nEND_PROGRAM\n")
+    assert "'Lft' is not declared" in run("check", "soft", code=2)
+
+
 def check_local_types():
     """Programs of B&R have types, functions and constants for themselves, by the same names; what its tools make does not count."""
     for name, size, value in (("Belt", 3, "TURN"), ("Press", 5, "PUSH")):
@@ -597,6 +611,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_nothing()
     check_automation_studio()
     check_mapp()
+    check_softmotion()
     check_local_types()
     check_apax()
     check_solution()

@@ -112,7 +112,8 @@ struct Checking {
     std::vector<std::pair<Type*, const TypeText*>> targets =
         {};  ///< of references, until all types are known
     bool knows_types = false;
-    int hops = 0;                        ///< from constant to constant that is declared later
+    int hops = 0;  ///< from constant to constant that is declared later
+    std::optional<NameMap<bool>> given_axes = {};  ///< names given to pins of axes, once asked for
     std::vector<Routine*> updates = {};  ///< of what the routine at hand names of libraries
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};

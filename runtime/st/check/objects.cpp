@@ -54,10 +54,35 @@ Routine* find_part(Checking& c, const Type& type, std::string_view name) {
     return own ? own : c.find_in_libraries(c.users.routines, part);
 }
 
+namespace {
+
+bool is_pin_of_an_axis(std::string_view pin) {
+    return same_name(pin, "axis") || same_name(pin, "master") || same_name(pin, "slave");
+}
+
+/// `Axis := x` in a call that may stand behind this name, of an axis that is declared nowhere.
+bool is_given_to_a_pin(Checking& c, const Token& name) {
+    if (name.local || c.is_in_test()) return false;
+    if (!c.given_axes) {
+        c.given_axes.emplace();
+        for (const Expression& call : c.tree.expressions) {
+            if (call.kind != E::call) continue;
+            for (const Argument& given : call.arguments)
+                if (given.value && given.value->kind == E::name &&
+                    is_pin_of_an_axis(given.name.text))
+                    c.given_axes->emplace(given.value->token.text, true);
+        }
+    }
+    return c.given_axes->contains(name.text);
+}
+
+}  // namespace
+
 bool is_object_of(Checking& c, const Expression& member) {
     const Expression& of = *member.operands[0];
-    if (of.kind != E::name || of.type || !of.token.quoted) return false;
+    if (of.kind != E::name || of.type) return false;
     if (find_variable(c, of.token) || c.find_routine(of.token)) return false;
+    if (!of.token.quoted && !is_given_to_a_pin(c, of.token)) return false;
     const Type* axis = standard_type(c, technology_object);
     if (!axis || enumeration_of(c, member)) return false;
     return find_part(c, *axis, member.token.text) ||
