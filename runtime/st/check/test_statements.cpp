@@ -82,18 +82,16 @@ void check_mocked(Checking& c, Expression& call) {
     if (instance.kind == E::name && !find_variable(c, instance.token)) {
         const Routine* routine = c.find_routine(instance.token);
         if (routine && routine->is_function())
-            c.fail(code::type_does_not_fit, instance.place,
-                   fmt::format("{} takes an instance of a function block, and '{}' is a function",
-                               known.name, instance.token.text),
-                   "MOCK_FUNCTION replaces a function; its calls are not counted");
-        else if (routine || standard_type(c, instance.token.text))
-            c.fail(code::type_does_not_fit, instance.place,
-                   fmt::format("{} takes an instance, and '{}' is a kind of block", known.name,
-                               instance.token.text),
-                   "name the variable");
-        else
-            check(c, slot);
-        return;
+            return void(c.fail(
+                code::type_does_not_fit, instance.place,
+                fmt::format("{} takes an instance of a function block, and '{}' is a function",
+                            known.name, instance.token.text),
+                "MOCK_FUNCTION replaces a function; its calls are not counted"));
+        if (routine || standard_type(c, instance.token.text))
+            return void(c.fail(code::type_does_not_fit, instance.place,
+                               fmt::format("{} takes an instance, and '{}' is a kind of block",
+                                           known.name, instance.token.text),
+                               "name the variable"));
     }
     const Type* type = check(c, slot);
     if (!type) return;

@@ -22,10 +22,11 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     write_fields(made, kind, routine);
 }
 
-/// Of those whose names are here without them, too.
+/// Of those whose names are here without them, too. A library that is here in parts says so.
 bool is_here(const Catalog& standard, std::string_view library) {
-    return is_vendor_library(library) ||
-           find_called(standard.libraries(), library, &LibraryFile::library);
+    if (is_vendor_library(library)) return true;
+    const LibraryFile* file = find_called(standard.libraries(), library, &LibraryFile::library);
+    return file && !file->text.starts_with("// In parts.");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST_CASE("what the catalogue has is a library's once that is taken", "[st][libr
 TEST_CASE("names that nobody has may be of libraries that are not here", "[st][libraries]") {
     const auto project = file("a.plcproj", "one\ntwo\n");
     const auto source = file("a.st",
-                             "PROGRAM p VAR a : FB_JsonSaxWriter; b : INT; END_VAR\n"
+                             "PROGRAM p VAR a : FB_JsonDomParser; b : INT; END_VAR\n"
                              "a.ResetDocument(); b := F_Foreign(b); b := TRUE;\n"
                              "END_PROGRAM\n");
     Diagnostics out;
@@ -129,7 +129,7 @@ TEST_CASE("names that nobody has may be of libraries that are not here", "[st][l
     const std::string told = out.render();
     CHECK(told.find("a.plcproj:2:1: error[L0927]: 2 names that nobody declares may be of libraries "
                     "that are not here: Tc3_JsonXml") != std::string::npos);
-    CHECK(told.find("FB_JsonSaxWriter (a.st:1), F_Foreign (a.st:2)") != std::string::npos);
+    CHECK(told.find("FB_JsonDomParser (a.st:1), F_Foreign (a.st:2)") != std::string::npos);
     CHECK(told.find("a.st:2:44: error[L0905]") != std::string::npos);
     CHECK(out.count() == 2);
 }
