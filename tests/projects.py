@@ -278,6 +278,7 @@ def check_nothing():
     write("nothing/below/history.db", b"SQLite format 3\0\1")
     write("nothing/below/Thumbs.db", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0")
     write("nothing/below/packages.db", "INSTALLED.DB 3\n")
+    write("nothing/below/Library.exp", b"d\x86\x02\0\x9c\xf1\x05\0")
     assert "there is no source of a controller in 'nothing'" in run("check", "nothing", code=2)
     assert "the file is not a text" in run("check", "nothing/below/history.db", code=2)
 

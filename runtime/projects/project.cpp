@@ -104,6 +104,15 @@ bool is_database(const std::string& file) {
     return lower(std::move(first)).find("data_block") == std::string::npos;
 }
 
+/// A table of exports, which linkers name as CoDeSys does its files.
+bool is_of_a_linker(const std::string& file) {
+    if (!ends_with(file, ".exp")) return false;
+    std::string first(256, ' ');
+    std::ifstream bytes(file, std::ios::binary);
+    bytes.read(first.data(), static_cast<std::streamsize>(first.size()));
+    return first.find('\0') != std::string::npos && !first.starts_with("\xFF\xFE");
+}
+
 /// What B&R's tools make beside `Logical`, and what a program in C has for itself.
 bool is_of_no_source(const std::string& file) {
     std::error_code unknown;
@@ -166,6 +175,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
     std::erase_if(files, is_database);
+    std::erase_if(files, is_of_a_linker);
     std::erase_if(files, is_built);
     std::erase_if(files, is_of_no_source);
     leave_to_projects(files);

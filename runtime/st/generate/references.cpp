@@ -249,7 +249,8 @@ Slot reference(Writing& w, const Expression& e) {
         case E::binary:
             return moved(w, e);
         case E::call:
-            return call(w, e, none);
+            return e.routine ? call(w, e, none)
+                             : copied(w, {Mode::address, 0, standard(w, e, none)});
         default: {
             const Location at = locate(w, e);
             return at.mode == Mode::slot ? at.slot : copied(w, at);

@@ -35,6 +35,7 @@ void reset_timer(Writing& w, const Expression& timer) {
 Slot value_or_address(Writing& w, const Expression& e, Slot wanted = none) {
     if (e.type->is_scalar()) return value(w, e, wanted);
     if (e.type->kind == Kind::text) return text_address(w, e);
+    if (e.type->is_reference()) return address_of(w, {Mode::slot, reference(w, e)});
     if (e.kind != E::call) {
         const Location at = locate(w, e);
         return address_of(w, at.packed ? unpacked(w, at, *e.type) : at);
