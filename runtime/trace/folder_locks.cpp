@@ -13,21 +13,23 @@
 
 namespace lineshaft {
 
-FolderLocks::FolderLocks(const std::set<std::string>& folders) {
+FolderLocks::FolderLocks(const std::set<std::string>& folders) : FolderLocks() {
     // Each once, by whatever names, and in one order for all processes.
     std::map<std::pair<dev_t, ino_t>, int> opened;
+    descriptors_.reserve(folders.size());
     for (const std::string& folder : folders) {
         const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         struct stat status {};
         if (descriptor < 0) continue;
-        if (::fstat(descriptor, &status) != 0 ||
-            !opened.try_emplace({status.st_dev, status.st_ino}, descriptor).second)
-            ::close(descriptor);
-    }
-    for (const auto& [place, descriptor] : opened) {
-        while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) continue;
         descriptors_.push_back(descriptor);
+        if (::fstat(descriptor, &status) == 0 &&
+            opened.try_emplace({status.st_dev, status.st_ino}, descriptor).second)
+            continue;
+        ::close(descriptor);
+        descriptors_.pop_back();
     }
+    for (const auto& [place, descriptor] : opened)
+        while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) continue;
 }
 
 FolderLocks::~FolderLocks() {

@@ -21,6 +21,8 @@ class FolderLocks {
     bool flush() const;
 
   private:
+    FolderLocks() = default;  ///< first, so that what throws behind it closes what is open
+
     std::vector<int> descriptors_;
 };
 
