@@ -86,6 +86,9 @@ std::span<const Field> Axis::fields() {
         output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
         local("homed", &A::homed, "", "by MC_Home"),
+        local("velocity_factor", &A::factors, &A::Factors::velocity, "", "of MC_SetOverride"),
+        local("acceleration_factor", &A::factors, &A::Factors::acceleration, "", "likewise"),
+        local("jerk_factor", &A::factors, &A::Factors::jerk, "", "likewise"),
         local("synchronization", &A::sync, &SyncMotion::stage, "", "in synchronized_motion")
             .one_of(SyncMotion::stage_names),
     };
