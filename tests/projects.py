@@ -354,6 +354,8 @@ def check_softmotion():
     run("run", "soft_motion.yaml", "--quiet")
     write("soft/B_typo.st", "PROGRAM B_typo\nVAR place : LREAL; END_VAR\nplace := Lft.fActPosition;\nEND_PROGRAM\n")
     assert "'Lft' is not declared" in run("check", "soft", code=2)
+    write("soft/B_typo.st", "PROGRAM B_typo\nVAR place : LREAL; END_VAR\nplace := Axis.fActPosition;\nEND_PROGRAM\n")
+    assert "'Axis' is not declared" in run("check", "soft", code=2)
 
 
 def check_local_types():

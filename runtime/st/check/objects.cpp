@@ -72,6 +72,8 @@ bool is_given_to_a_pin(Checking& c, const Token& name) {
                     is_pin_of_an_axis(given.name.text))
                     c.given_axes->emplace(given.value->token.text, true);
         }
+        for (const Declaration& declared : c.tree.declarations)
+            c.given_axes->erase(declared.name.text);
     }
     return c.given_axes->contains(name.text);
 }
