@@ -91,7 +91,7 @@ std::optional<const Type*> check_place_call(Checking& c, Expression*& e) {
     const bool is_pou = same_name(name, "__pouname");
     if ((!is_pou && !same_name(name, "__position")) || !e->arguments.empty()) return {};
     const Mark mark = e->place.mark();
-    const std::string text = !is_pou    ? fmt::format("Line {}, Column {}", mark.line, mark.column)
+    const std::string text = !is_pou     ? fmt::format("Line {}, Column {}", mark.line, mark.column)
                              : c.routine ? c.routine->name
                                          : std::string();
     return become(c, e, string_type, {.text = text});

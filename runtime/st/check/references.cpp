@@ -171,8 +171,8 @@ const Type* check_size(Checking& c, Expression*& e) {
     Expression*& of = e->arguments[0].value;
     const auto qualified = qualified_name(c, *of);
     const Token name = qualified ? *qualified : of->token;
-    const bool is_type = (qualified || of->kind == E::name) && !find_variable(c, name) &&
-                         !is_own_instance(c, *of);
+    const bool is_type =
+        (qualified || of->kind == E::name) && !find_variable(c, name) && !is_own_instance(c, *of);
     const Type* type = is_type ? resolve_name(c, name) : check(c, of);
     if (!type) return nullptr;
     return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
