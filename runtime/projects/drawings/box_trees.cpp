@@ -308,7 +308,8 @@ class BoxTrees {
         const Marks marks = archive_.marks_of(target);
         const std::string name = archive_.text(target, "Operand");
         const Mark place = place_of(target, name);
-        if (marks.is_jump || marks.is_return) return leave(name, marks.is_jump, value, place);
+        if (marks.is_jump) return jumps_.leave(now_, name, value, place, out_);
+        if (marks.is_return) return jumps_.leave(now_, {}, value, place, out_);
         if (marks.is_rising || marks.is_falling)
             value = edge_of(value, marks.is_rising ? "R_TRIG" : "F_TRIG", place);
         const Value to = written(target);
@@ -323,16 +324,6 @@ class BoxTrees {
         now_.write(" := ", place);
         now_.append((marks.is_negated ? negated(value, place) : value).text);
         now_.write(";\n", place);
-    }
-
-    void leave(const std::string& label, bool is_jump, const Value& when, const Mark& place) {
-        if (is_jump && jumps_.number_of(label) == 0)
-            return out_.add(code::not_declared, place,
-                            fmt::format("there is no label '{}' in this body", label));
-        write_if(now_, when, place);
-        now_.write(is_jump ? jumps_.leaving(label) + "\n" : "RETURN;\n", place);
-        write_end_if(now_, when, place);
-        if (is_jump) jumps_.jump(label, std::exchange(now_, {}), place);
     }
 
     /// What a box is given is evaluated here.

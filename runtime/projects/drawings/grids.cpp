@@ -240,7 +240,9 @@ class Grid {
         if (value.is_empty())
             return refuse(place, "nothing leads to this coil", "draw a line to it, or remove it");
         const std::string_view type = cell.node.attribute("type").value();
-        if (type == "jump" || type == "return") return leave(cell, type, value, place);
+        if (type == "jump")
+            return jumps_.leave(now_, file_.plain(cell.node.attribute("name")), value, place, out_);
+        if (type == "return") return jumps_.leave(now_, {}, value, place, out_);
         if (const auto edge = edge_of(type); !edge.empty()) value = on_edge(value, edge, place);
         const Value target = written(cell.node, place);
         if (type == "set" || type == "reset") {
@@ -256,18 +258,6 @@ class Grid {
         now_.write(" := ", place);
         now_.append((type == "negated" ? negated(value, place) : value).text);
         now_.write(";\n", place);
-    }
-
-    void leave(const Cell& cell, std::string_view type, const Value& when, const Mark& place) {
-        const std::string label = file_.plain(cell.node.attribute("name"));
-        const bool is_jump = type == "jump";
-        if (is_jump && jumps_.number_of(label) == 0)
-            return out_.add(code::not_declared, place,
-                            fmt::format("there is no label '{}' in this body", label));
-        write_if(now_, when, place);
-        now_.write(is_jump ? jumps_.leaving(label) + "\n" : "RETURN;\n", place);
-        write_end_if(now_, when, place);
-        if (is_jump) jumps_.jump(label, std::exchange(now_, {}), place);
     }
 
     /// Its parts below each other, and what is given to them.

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/networks.hpp"
+#include "runtime/projects/drawings/values.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
@@ -33,6 +35,17 @@ void Jumps::jump(std::string target, Excerpts before, const Mark& place) {
 
 /// What is jumped over is what stands between a jump, which leaves the number of its label, and
 /// that label, which takes it away. One that goes back has the whole body repeated.
+void Jumps::leave(Excerpts& now, const std::optional<std::string>& label, const Value& when,
+                  const Mark& place, Diagnostics& out) {
+    if (label && number_of(*label) == 0)
+        return out.add(code::not_declared, place,
+                       fmt::format("there is no label '{}' in this body", *label));
+    write_if(now, when, place);
+    now.write(label ? leaving(*label) + "\n" : "RETURN;\n", place);
+    write_end_if(now, when, place);
+    if (label) jump(*label, std::exchange(now, {}), place);
+}
+
 Excerpts Jumps::finish(Excerpts rest) {
     stretches_.push_back({.statements = std::move(rest)});
     Excerpts made;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 namespace lineshaft::projects {
 
 class MadeVariables;
+struct Value;
 
 /// Statements with labels and jumps, as statements without.
 class Jumps {
@@ -26,6 +28,9 @@ class Jumps {
     void label(std::string name, Excerpts before, const Mark& place);
     /// `before` ends with what leaves.
     void jump(std::string target, Excerpts before, const Mark& place);
+    /// Adds to `now` that it is left where `when` is: for a label, else by RETURN.
+    void leave(Excerpts& now, const std::optional<std::string>& label, const Value& when,
+               const Mark& place, Diagnostics& out);
     /// All of it; `rest` stands behind the last of them.
     Excerpts finish(Excerpts rest);
 
