@@ -42,19 +42,30 @@ bool is_time_of_number(const Type& from, const Type& to) {
     return is(from, to) || is(to, from);
 }
 
-/// Of the widest variable in what is reckoned in a wider type, because signs differ: 32 of
-/// `udint - int`, which is a LINT here; 0: something else.
-int width_of_mixed_signs(const Expression& e) {
-    const bool has_two = e.kind == E::binary;
-    if (has_two || (e.kind == E::unary && e.op != Word::not_)) {
-        const int left = width_of_mixed_signs(*e.operands[0]);
-        const int right = has_two ? width_of_mixed_signs(*e.operands[1]) : left;
-        return left && right ? std::max(left, right) : 0;
-    }
-    if (is_constant(e)) return 1;
-    const Expression& value = e.kind == E::converted ? *e.operands[0] : e;
-    if (value.type->kind != Kind::integer) return 0;
-    return value.kind == E::binary ? width_of_mixed_signs(value) : value.type->bits;
+/// Integers of which something is reckoned.
+struct Reckoned {
+    int width = 0;  ///< of the widest variable
+    bool has_signed = false, has_unsigned = false;
+};
+
+/// False: there is something else in it.
+bool add_reckoned(Reckoned& to, const Expression& e) {
+    if (is_constant(e)) return true;
+    if (e.kind == E::converted) return add_reckoned(to, *e.operands[0]);
+    if (e.kind == E::binary || (e.kind == E::unary && e.op != Word::not_))
+        return add_reckoned(to, *e.operands[0]) &&
+               (e.kind == E::unary || add_reckoned(to, *e.operands[1]));
+    to.width = std::max<int>(to.width, e.type->bits);
+    (e.type->is_signed ? to.has_signed : to.has_unsigned) = true;
+    return e.type->kind == Kind::integer;
+}
+
+/// `udint - int`, which is a LINT here because signs differ, for a type of 32 bits.
+bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to) {
+    const bool are_integers = from.kind == Kind::integer && to.kind == Kind::integer;
+    Reckoned all;
+    return are_integers && !to.is_subrange && e.kind == E::binary && add_reckoned(all, e) &&
+           all.has_signed && all.has_unsigned && all.width <= to.bits;
 }
 
 /// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
@@ -67,11 +78,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
-    const int width = dialect.is_loose && to.kind == Kind::integer && !to.is_subrange &&
-                              from.kind == Kind::integer && e.kind == E::binary
-                          ? width_of_mixed_signs(e)
-                          : 0;
-    const bool mixes_signs = width > 0 && width <= to.bits;
+    const bool mixes_signs = dialect.is_loose && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
         !changes_sign && !mixes_signs)
         return false;

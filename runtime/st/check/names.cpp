@@ -37,10 +37,6 @@ const Type* unknown_name(Checking& c, const Expression& e) {
     return undeclared(c, e.token, e.place, visible_names(c));
 }
 
-}  // namespace
-
-namespace {
-
 Variable* find_in_any_capitals(Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
         if (Variable* variable = find_in(r->names, token.text)) return variable;
