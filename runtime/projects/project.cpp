@@ -9,6 +9,7 @@
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/plcopen.hpp"
+#include "runtime/projects/simatic_sd.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/projects/twincat.hpp"
 #include "runtime/source/codes.hpp"
@@ -54,7 +55,7 @@ constexpr Form forms[] = {{".tcpou", read_twincat_object},  {".tcdut", read_twin
                           {".plcproj", read_plcproj},       {".sln", read_solution},
                           {".tsproj", read_solution},       {".tspproj", read_solution},
                           {".xti", read_solution},          {".xml", read_plcopen},
-                          {".prg", read_iec_program}};
+                          {".prg", read_iec_program},       {".s7dcl", read_simatic_sd}};
 
 const Form* form_of(const fs::path& file) {
     const std::string ending = lower(file.extension().string());

@@ -1,0 +1,360 @@
+#include "runtime/projects/drawings/s7_instructions.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/projects/drawings/s7_boxes.hpp"
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::projects {
+
+namespace s7 {
+
+namespace {
+
+using st::same_name;
+
+// Contacts.
+
+Value contact(Running& r) {
+    return r.and_(r.power, r.operand("operand"));
+}
+Value inverted_contact(Running& r) {
+    return r.and_(r.power, r.not_(r.operand("operand")));
+}
+
+/// Of its operand; that it had one is in `bit`.
+Value edge_contact(Running& r, bool is_rising) {
+    const Value bit = r.operand("bit"), signal = r.operand("operand"), edge = r.wire();
+    r.assign(edge, is_rising ? r.and_(signal, r.not_(bit)) : r.and_(r.not_(signal), bit));
+    r.assign(bit, signal);
+    return r.and_(r.power, edge);
+}
+Value rising_contact(Running& r) {
+    return edge_contact(r, true);
+}
+Value falling_contact(Running& r) {
+    return edge_contact(r, false);
+}
+
+/// Of power; the pin without a name is the bit.
+Value edge_of_power(Running& r, bool is_rising) {
+    const Value bit = r.operand("bit"), edge = r.wire();
+    const Value power = r.all.fixed(r.to, r.power, r.it.place);
+    r.assign(edge, is_rising ? r.and_(power, r.not_(bit)) : r.and_(r.not_(power), bit));
+    r.assign(bit, power);
+    return edge;
+}
+Value rising_power(Running& r) {
+    return edge_of_power(r, true);
+}
+Value falling_power(Running& r) {
+    return edge_of_power(r, false);
+}
+
+Value inverted_power(Running& r) {
+    return r.not_(r.power);
+}
+
+/// A contact, or with an output a box.
+Value comparison(Running& r) {
+    const std::string_view sign = infix_of(std::string_view(r.it.name).substr(0, 2));
+    const Value result = r.binary(r.operand("in1"), sign, r.operand("in2"));
+    const auto* target = r.it.find("out");
+    if (!target || target->value.is_empty()) return r.and_(r.power, result);
+    const Value enabled = r.enable();
+    r.open(enabled), r.assign(target->value, result), r.close(enabled);
+    return enabled;
+}
+
+Value range_of(Running& r) {
+    const Value in = r.operand("in");
+    return r.and_(r.binary(r.operand("min"), " <= ", in), r.binary(in, " <= ", r.operand("max")));
+}
+Value in_range(Running& r) {
+    return r.and_(r.power, range_of(r));
+}
+Value out_of_range(Running& r) {
+    return r.and_(r.power, r.not_(range_of(r)));
+}
+
+Value valid(const Running& r) {
+    Value made = r.word("IS_VALID(");
+    made.text.append(r.operand("operand").text);
+    made.text.write(")", r.it.place);
+    made.form = Value::Form::atom;
+    return made;
+}
+Value valid_contact(Running& r) {
+    return r.and_(r.power, valid(r));
+}
+Value invalid_contact(Running& r) {
+    return r.and_(r.power, r.not_(valid(r)));
+}
+
+// FBD: gates, whose first input is what leads to them.
+
+Value gate(Running& r, Value (*join)(const Running&, const Value&, const Value&)) {
+    Value made = r.it.find("in1") ? Value{} : r.power;
+    for (const auto& pin : r.it.pins)
+        if (!pin.is_output && !pin.value.is_empty())
+            made = made.is_empty() ? pin.value : join(r, made, pin.value);
+    return made;
+}
+Value and_gate(Running& r) {
+    return gate(r, [](const Running& of, const Value& a, const Value& b) { return of.and_(a, b); });
+}
+Value or_gate(Running& r) {
+    return gate(r, [](const Running& of, const Value& a, const Value& b) {
+        return a.is_always ? a : of.or_(a, b);
+    });
+}
+Value xor_gate(Running& r) {
+    return gate(r, [](const Running& of, const Value& a, const Value& b) {
+        return of.binary(a, " XOR ", b);
+    });
+}
+
+// Coils.
+
+Value coil(Running& r) {
+    const Value power = r.enable();
+    r.assign(r.operand("operand"), power);
+    return power;
+}
+Value inverted_coil(Running& r) {
+    const Value power = r.enable();
+    r.assign(r.operand("operand"), r.not_(power));
+    return power;
+}
+
+Value assigned_if(Running& r, std::string_view value) {
+    const Value power = r.enable();
+    r.open(power), r.assign(r.operand("operand"), r.word(value)), r.close(power);
+    return power;
+}
+Value set_coil(Running& r) {
+    return assigned_if(r, "TRUE");
+}
+Value reset_coil(Running& r) {
+    return assigned_if(r, "FALSE");
+}
+
+Value edge_coil(Running& r, bool is_rising) {
+    const Value power = r.all.fixed(r.to, r.power, r.it.place), bit = r.operand("bit");
+    r.assign(r.operand("operand"),
+             is_rising ? r.and_(power, r.not_(bit)) : r.and_(r.not_(power), bit));
+    r.assign(bit, power);
+    return power;
+}
+Value rising_coil(Running& r) {
+    return edge_coil(r, true);
+}
+Value falling_coil(Running& r) {
+    return edge_coil(r, false);
+}
+
+/// `TOn_Coil(timer := #t, pt := T#1s)`
+Value timer_coil(Running& r) {
+    const Value power = r.enable();
+    r.to.append(r.operand("timer").text);
+    r.write(fmt::format(".{}(IN := ", r.it.name.substr(0, r.it.name.find('_'))));
+    r.to.append(power.text);
+    r.write(", PT := ");
+    r.to.append(r.operand("pt").text);
+    r.write(");\n");
+    return power;
+}
+
+Value timer_command(Running& r, std::string_view function) {
+    const Value power = r.enable();
+    const Value timer = r.it.find("timer") ? r.operand("timer") : r.operand("operand");
+    r.open(power);
+    r.to.append(r.call(function, {{"PT", r.operand("pt")}, {"TIMER", timer}}).text);
+    r.write(";\n");
+    r.close(power);
+    return power;
+}
+Value timer_reset(Running& r) {
+    return timer_command(r, "RESET_TIMER");
+}
+Value timer_preset(Running& r) {
+    return timer_command(r, "PRESET_TIMER");
+}
+
+Value jump(Running& r, const Value& when) {
+    r.open(when);
+    r.write("GOTO ");
+    r.to.append(r.operand("operand").text);
+    r.write(";\n");
+    r.close(when);
+    return r.power;
+}
+Value jump_coil(Running& r) {
+    return jump(r, r.enable());
+}
+Value inverted_jump_coil(Running& r) {
+    return jump(r, r.not_(r.enable()));
+}
+
+Value return_coil(Running& r) {
+    const Value power = r.enable();
+    r.open(power), r.write("RETURN;\n"), r.close(power);
+    return power;
+}
+
+/// Of two that are TRUE at once the one whose input has a 1 wins.
+Value flip_flop(Running& r, bool set_wins) {
+    const bool is_box = !r.it.callee.is_empty();
+    const Value state = is_box ? r.it.callee : r.operand("operand");
+    const Value other = is_box ? r.operand("operand") : Value{};
+    const auto input = [&](std::string_view name, std::string_view with_one, bool wins) {
+        for (const std::string_view pin : {name, with_one})
+            if (const auto* found = r.it.find(pin); found && !found->name.empty())
+                return found->value;
+        return wins ? other : r.power;
+    };
+    const Value set = input("s", "s1", set_wins), reset = input("r", "r1", !set_wins);
+    const Value stays = r.and_(set_wins ? state : r.or_(set, state), r.not_(reset));
+    r.assign(state, set_wins ? r.or_(set, stays) : stays);
+    return state;
+}
+Value reset_set(Running& r) {
+    return flip_flop(r, true);
+}
+Value set_reset(Running& r) {
+    return flip_flop(r, false);
+}
+
+Value refused(Running& r) {
+    r.out.add(code::not_supported, r.it.place,
+              fmt::format("the instruction {} is not supported", r.it.name),
+              "write it in a network of SCL");
+    return r.power;
+}
+
+/// Names of SIMATIC SD, those of the help where they are others, and those of edition V20.
+struct Row {
+    Value (*run)(Running&);
+    std::string_view names;  ///< with a blank around each
+};
+constexpr Row rows[] = {
+    {contact, " contact "},
+    {inverted_contact, " i_contact "},
+    {rising_contact, " p_contact "},
+    {falling_contact, " n_contact "},
+    {rising_power, " p_trig "},
+    {falling_power, " n_trig "},
+    {inverted_power, " not "},
+    {comparison,
+     " eq_contact ne_contact ge_contact gt_contact le_contact lt_contact eq ne ge gt le lt "},
+    {in_range, " inrange in_range "},
+    {out_of_range, " outrange out_range "},
+    {valid_contact, " ok isvalidcontact "},
+    {invalid_contact, " nok not_ok isnotvalidcontact "},
+    {and_gate, " a "},
+    {or_gate, " o "},
+    {xor_gate, " x "},
+    {coil, " coil "},
+    {inverted_coil, " i_coil "},
+    {set_coil, " s_coil "},
+    {reset_coil, " r_coil "},
+    {rising_coil, " p_coil "},
+    {falling_coil, " n_coil "},
+    {timer_coil, " tp_coil ton_coil tof_coil tonr_coil "},
+    {timer_reset, " rt_coil "},
+    {timer_preset, " pt_coil "},
+    {jump_coil, " jumpcoil "},
+    {inverted_jump_coil, " i_jumpcoil "},
+    {return_coil, " return returntrue returnfalse returncoil "},
+    {reset_set, " s_rs rs "},
+    {set_reset, " s_sr sr "},
+    {move, " move s_move "},
+    {arithmetic, " add sub mul div mod and or xor "},
+    {negation, " neg "},
+    {inversion, " inv "},
+    {power_of, " expt "},
+    {increment, " inc "},
+    {decrement, " dec "},
+    {conversion, " convert "},
+    {limit, " limit "},
+    {scale, " scale scale_x "},
+    {normalize, " normalize norm_x "},
+    {multiplexer, " mux "},
+    {formula, " calculate calc "},
+    {plain_function,
+     " abs min max sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap sel "
+     "shl shr rol ror "},
+    {timer, " tp ton tof tonr "},
+    {up_counter, " ctu "},
+    {down_counter, " ctd "},
+    {up_down_counter, " ctud "},
+};
+
+const Row* row_of(std::string_view name) {
+    const std::string word = fmt::format(" {} ", lower(name));
+    const auto has_name = [&](const Row& row) { return row.names.find(word) != row.names.npos; };
+    const auto* found = std::ranges::find_if(rows, has_name);
+    return found == std::end(rows) ? nullptr : found;
+}
+
+bool is_unknown_form(std::string_view name) {
+    const std::string small = lower(name);
+    return small.ends_with("contact") || small.ends_with("coil");
+}
+
+}  // namespace
+
+}  // namespace s7
+
+const S7Instruction::Pin* S7Instruction::find(std::string_view pin) const {
+    const auto has_name = [&](const Pin& one) { return st::same_name(one.name, pin); };
+    const auto found = std::ranges::find_if(pins, has_name);
+    return found == pins.end() ? nullptr : &*found;
+}
+
+Value S7Instruction::value(std::string_view pin) const {
+    const Pin* found = find(pin);
+    if (!found) found = find("");
+    return found ? found->value : Value{};
+}
+
+bool S7Instructions::has_instance(std::string_view name) {
+    const std::string small = lower(name);
+    if (small == "r_trig" || small == "f_trig" || small.starts_with("mc_")) return true;
+    const s7::Row* row = s7::row_of(name);
+    using Run = Value (*)(s7::Running&);
+    constexpr Run of_instances[] = {s7::timer,           s7::up_counter, s7::down_counter,
+                                    s7::up_down_counter, s7::reset_set,  s7::set_reset};
+    return row && std::ranges::find(of_instances, row->run) != std::end(of_instances);
+}
+
+Value S7Instructions::result_of(const S7Instruction& instruction) {
+    for (const std::string_view which : {"DestType", "SrcType", "value_type"})
+        if (const std::string type = s7::type_of(instruction, which); !type.empty())
+            return words(variables_.make("_wire", type), instruction.place, type);
+    out_.add(code::not_supported, instruction.place,
+             fmt::format("the type of what {} gives is not known", instruction.name),
+             "write it to a variable");
+    return words("0", instruction.place);
+}
+
+Value S7Instructions::fixed(Excerpts& to, Value value, const Mark& place) {
+    const bool is_wire = value.form == Value::Form::atom && value.text.text().starts_with("_wire");
+    if (value.is_always || value.is_empty() || is_wire) return value;
+    return kept_in(to, variables_.make("_wire", "BOOL"), value, place);
+}
+
+Value S7Instructions::run(Excerpts& to, const S7Instruction& instruction, Value power,
+                          bool goes_on) {
+    s7::Running r{*this, out_, variables_, to, instruction, std::move(power), goes_on};
+    const s7::Row* row = s7::row_of(instruction.name);
+    if (row) return row->run(r);
+    if (!instruction.callee.is_empty()) return s7::called(r);
+    return s7::is_unknown_form(instruction.name) ? s7::refused(r) : s7::other_function(r);
+}
+
+}  // namespace lineshaft::projects

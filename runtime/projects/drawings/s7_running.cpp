@@ -1,0 +1,91 @@
+#include "runtime/projects/drawings/s7_running.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::projects::s7 {
+
+Value Running::operand(std::string_view pin) const {
+    Value given = it.value(pin);
+    if (given.is_empty())
+        out.add(code::something_else_expected, it.place,
+                fmt::format("there is nothing at {} of {}", pin, it.name), "connect it");
+    return given;
+}
+
+Value Running::enable() {
+    if (goes_on) power = all.fixed(to, std::move(power), it.place);
+    return power;
+}
+
+void Running::assign(const Value& target, const Value& value) {
+    if (target.is_empty()) return;
+    to.append(target.text);
+    write(" := ");
+    to.append(value.text);
+    write(";\n");
+}
+
+Value Running::not_(const Value& value) const {
+    return value.is_always ? words("FALSE", it.place, "BOOL") : negated(value, it.place);
+}
+
+Value Running::binary(const Value& a, std::string_view sign, const Value& b) const {
+    Value made{.text = enclosed(a, it.place), .form = Value::Form::other};
+    made.text.write(sign, it.place);
+    made.text.append(enclosed(b, it.place));
+    return made;
+}
+
+Value Running::call(std::string_view function, const std::vector<Argument>& given) const {
+    Value made{.text = it.callee.text, .form = Value::Form::atom};
+    made.text.write(fmt::format("{}(", function), it.place);
+    std::string_view between;
+    for (const auto& [pin, value, is_output] : given) {
+        if (value.is_empty()) continue;
+        made.text.write(between, it.place);
+        if (!pin.empty())
+            made.text.write(fmt::format("{} {} ", pin, is_output ? "=>" : ":="), it.place);
+        made.text.append(value.text);
+        between = ", ";
+    }
+    made.text.write(")", it.place);
+    return made;
+}
+
+std::vector<Argument> Running::pins(std::string_view but, std::vector<Argument> first) const {
+    for (const auto& pin : it.pins)
+        if (but.empty() || !st::same_name(pin.name, but))
+            first.push_back({pin.name, pin.value, pin.is_output});
+    return first;
+}
+
+std::vector<Argument> Running::inputs() const {
+    std::vector<Argument> made;
+    for (const auto& pin : it.pins)
+        if (!pin.is_output) made.push_back({pin.name, pin.value});
+    return made;
+}
+
+std::string type_of(const S7Instruction& instruction, std::string_view which) {
+    const std::string_view all = instruction.types;
+    for (std::size_t at = 0; at < all.size();) {
+        const auto is_part = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
+        const auto* begin = std::find_if(all.begin() + at, all.end(), is_part);
+        const auto* end = std::find_if_not(begin, all.end(), is_part);
+        at = static_cast<std::size_t>(end - all.begin());
+        if (begin == end || !st::same_name({begin, end}, which)) continue;
+        begin = std::find_if(end, all.end(), is_part);
+        end = std::find_if_not(begin, all.end(), is_part);
+        return {begin, end};
+    }
+    return {};
+}
+
+}  // namespace lineshaft::projects::s7

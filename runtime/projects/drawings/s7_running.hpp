@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/projects/drawings/s7_instructions.hpp"
+
+namespace lineshaft::projects::s7 {
+
+/// What stands in the parentheses of a call.
+struct Argument {
+    std::string pin = {};  ///< empty: by its position
+    Value value = {};      ///< empty: it is left out
+    bool is_output = false;
+};
+
+/// What an instruction runs with.
+struct Running {
+    S7Instructions& all;
+    Diagnostics& out;
+    MadeVariables& variables;
+    Excerpts& to;
+    const S7Instruction& it;
+    Value power;
+    bool goes_on;  ///< who stands behind it takes power
+
+    /// Of a pin at which something must be; else that is told.
+    Value operand(std::string_view pin) const;
+    /// Power as it is before the instruction does anything.
+    Value enable();
+
+    void write(std::string_view text) { to.write(text, it.place); }
+    void assign(const Value& target, const Value& value);
+    /// `IF condition THEN`, and its end.
+    void open(const Value& condition) { write_if(to, condition, it.place); }
+    void close(const Value& condition) { write_end_if(to, condition, it.place); }
+
+    Value wire() { return words(variables.make("_wire", "BOOL"), it.place, "BOOL"); }
+    Value word(std::string_view text) const { return words(text, it.place); }
+    Value not_(const Value& value) const;
+    Value and_(const Value& a, const Value& b) const { return both(a, b, it.place); }
+    Value or_(const Value& a, const Value& b) const { return either(a, b, it.place); }
+    Value binary(const Value& a, std::string_view sign, const Value& b) const;
+
+    /// `callee.NAME(pin := value, ...)`
+    Value call(std::string_view function, const std::vector<Argument>& given) const;
+    /// All pins but one, behind `first`.
+    std::vector<Argument> pins(std::string_view but = {}, std::vector<Argument> first = {}) const;
+    std::vector<Argument> inputs() const;
+};
+
+/// `SrcType` of `[SrcType := Int, DestType := Real]`; empty: it is not there.
+std::string type_of(const S7Instruction& instruction, std::string_view which);
+
+}  // namespace lineshaft::projects::s7
