@@ -265,7 +265,7 @@ void ProgramReader::find_source(const Node& named) {
         read_.fail(code::file_cannot_be_read, named,
                    fmt::format("the folder '{}' has no file of Structured Text", named.text),
                    "their names end with .st, .scl, .s7dcl, .udt, .db, .TcPOU, .TcDUT, .TcGVL, "
-                   ".TcIO, .TcTLEO, .plcproj, .xml (PLCopen), .exp, .typ, .var or .fun");
+                   ".TcIO, .TcTLEO, .plcproj, .xml (PLCopen, SimaticML), .exp, .typ, .var or .fun");
     program_.sources_known = program_.sources_known && !error && !files.empty();
     for (const std::string& file : files) read_source_file(file, named.mark);
 }

@@ -70,7 +70,8 @@ const Form& program_form() {
                   "sources",
                   one_or_list(a_value.as("a file of 'sources'"), "'sources' has no file"),
                   "Structured Text (.st, .scl, .s7dcl, .udt, .db), projects of TwinCAT (.plcproj) "
-                  "and their files (.TcPOU, .TcDUT, .TcGVL, .TcIO, .TcTLEO), PLCopen XML (.xml), "
+                  "and their files (.TcPOU, .TcDUT, .TcGVL, .TcIO, .TcTLEO), PLCopen XML and "
+                  "SimaticML (.xml), "
                   "CoDeSys "
                   "2.3 (.exp), "
                   "B&R (.typ, .var, .fun), or folders of them, relative "

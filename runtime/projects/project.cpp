@@ -9,6 +9,7 @@
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/plcopen.hpp"
+#include "runtime/projects/simatic_ml.hpp"
 #include "runtime/projects/simatic_sd.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/projects/twincat.hpp"
@@ -44,6 +45,10 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     to.project.add(std::move(source));
 }
 
+void read_xml(const Reading& to, const std::string& path, const Mark& where) {
+    return is_simatic_ml(path) ? read_simatic_ml(to, path, where) : read_plcopen(to, path, where);
+}
+
 /// By the ending of a file's name, in small letters.
 struct Form {
     std::string_view ending;
@@ -54,7 +59,7 @@ constexpr Form forms[] = {{".tcpou", read_twincat_object},  {".tcdut", read_twin
                           {".tctleo", read_twincat_object}, {".tctto", read_twincat_object},
                           {".plcproj", read_plcproj},       {".sln", read_solution},
                           {".tsproj", read_solution},       {".tspproj", read_solution},
-                          {".xti", read_solution},          {".xml", read_plcopen},
+                          {".xti", read_solution},          {".xml", read_xml},
                           {".prg", read_iec_program},       {".s7dcl", read_simatic_sd}};
 
 const Form* form_of(const fs::path& file) {
@@ -161,7 +166,7 @@ bool is_source(const fs::path& file) {
     const Form* form = form_of(file);
     if (is_mapp_configuration(file)) return true;
     if (is_of_hardware(file)) return false;
-    if (form && form->read == read_plcopen) return is_plcopen(file);
+    if (form && form->read == read_xml) return is_plcopen(file) || is_simatic_ml(file);
     if (form && form->read == read_iec_program) return is_iec_program(file);
     return is_apax(file) || form || is_structured_text(file);
 }

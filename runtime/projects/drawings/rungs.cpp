@@ -76,6 +76,8 @@ class Network {
     }
 
   private:
+    static constexpr int deepest = 500;
+
     // Reading.
 
     Mark place_of(const st::Place& place, std::string_view what) const {
@@ -261,7 +263,10 @@ class Network {
         if (!is_sound_ || rung.state == Rung::State::done) return;
         if (rung.state == Rung::State::runs)
             return tell(rung.place, "the wires lead round in a circle", "cut one of them");
+        if (depth_ == deepest)
+            return tell(rung.place, "so many rungs take from each other", "use a variable");
         rung.state = Rung::State::runs;
+        ++depth_;
         Value power = !rung.start.is_empty() ? rung.start
                       : rung.from.empty()    ? always(rung.place)
                                              : value_of_wire(rung.from, rung.place);
@@ -269,6 +274,7 @@ class Network {
             const bool goes_on = i + 1 < rung.steps.size() || !rung.end.empty();
             power = run(rung.steps[i], std::move(power), goes_on);
         }
+        --depth_;
         rung.start = std::move(power);
         rung.state = Rung::State::done;
     }
@@ -352,6 +358,7 @@ class Network {
     std::map<std::string, Value, std::less<>> wires_ = {};
     Excerpts now_ = {};
     bool is_sound_ = true;
+    int depth_ = 0;
 };
 
 }  // namespace

@@ -350,6 +350,8 @@ Value S7Instructions::fixed(Excerpts& to, Value value, const Mark& place) {
 
 Value S7Instructions::run(Excerpts& to, const S7Instruction& instruction, Value power,
                           bool goes_on) {
+    constexpr std::size_t longest = 4096;  // bytes of an expression
+    if (power.text.text().size() > longest) power = fixed(to, std::move(power), instruction.place);
     s7::Running r{*this, out_, variables_, to, instruction, std::move(power), goes_on};
     const s7::Row* row = s7::row_of(instruction.name);
     if (row) return row->run(r);

@@ -1,0 +1,166 @@
+#include "runtime/projects/drawings/simatic_access.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "runtime/source/letters.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+bool is_called(pugi::xml_node node, std::string_view name) {
+    return node.name() == name;
+}
+
+std::string_view scope_of(pugi::xml_node node) {
+    return node.attribute("Scope").value();
+}
+
+bool is_local(std::string_view scope) {
+    return scope.starts_with("Local");
+}
+
+/// That needs no quotes behind a '.'.
+bool is_plain(std::string_view name) {
+    return !name.empty() && is_letter(name.front()) &&
+           std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
+bool has_tokens(pugi::xml_node node) {
+    return static_cast<bool>(node.child("Token"));
+}
+
+}  // namespace
+
+Excerpts SimaticAccess::quoted(pugi::xml_node named) const {
+    Excerpts made;
+    write_name(made, named, true);
+    return made;
+}
+
+Excerpts SimaticAccess::reference(pugi::xml_node scoped) const {
+    Excerpts made;
+    write_components(made, scoped, is_local(scope_of(scoped)));
+    return made;
+}
+
+Excerpts SimaticAccess::text_of(pugi::xml_node access) const {
+    Excerpts made;
+    const bool local = is_local(scope_of(access));
+    if (const auto symbol = access.child("Symbol")) write_components(made, symbol, local);
+    if (const auto constant = access.child("Constant")) write_constant(made, constant, local);
+    if (const auto address = access.child("Address")) write_address(made, address);
+    if (const auto label = access.child("Label")) write_name(made, label, false);
+    if (const auto word = access.child("PredefinedVariable")) write_name(made, word, false);
+    for (const char* call : {"CallInfo", "Instruction"})
+        if (const auto called = access.child(call)) write_call(made, called);
+    if (const auto expression = access.child("Expression")) write_tokens(made, expression);
+    return made;
+}
+
+Excerpts SimaticAccess::statements(pugi::xml_node tokens) const {
+    Excerpts made;
+    write_tokens(made, tokens);
+    made.write("\n", place(tokens));
+    return made;
+}
+
+void SimaticAccess::write_tokens(Excerpts& to, pugi::xml_node parent) const {
+    for (const pugi::xml_node token : parent.children()) write_token(to, token);
+}
+
+void SimaticAccess::write_token(Excerpts& to, pugi::xml_node token) const {
+    if (is_called(token, "Token")) {
+        file_.copy(to, token.attribute("Text"));
+    } else if (is_called(token, "Blank")) {
+        to.write(std::string(std::clamp(token.attribute("Num").as_uint(1), 1U, 200U), ' '),
+                 place(token));
+    } else if (is_called(token, "NewLine")) {
+        to.write("\n", place(token));
+    } else if (is_called(token, "Text")) {
+        file_.copy(to, token);
+    } else if (is_called(token, "Access")) {
+        to.append(text_of(token));
+    } else if (is_called(token, "Parameter")) {
+        file_.copy(to, token.attribute("Name"));
+        write_tokens(to, token);
+    } else if (is_called(token, "Component")) {
+        write_name(to, token, !is_plain(file_.plain(token.attribute("Name"))));
+    } else if (is_called(token, "NamelessParameter") || is_called(token, "Expression")) {
+        write_tokens(to, token);
+    }
+}
+
+/// `#` before a local name; a global one stands in quotes. Dots are there as tokens, or not at all.
+void SimaticAccess::write_components(Excerpts& to, pugi::xml_node symbol, bool is_local) const {
+    bool is_first = true;
+    for (const pugi::xml_node part : symbol.children("Component")) {
+        const std::string name = file_.plain(part.attribute("Name"));
+        if (!is_first) to.write(".", place(part));
+        if (is_first && is_local) to.write("#", place(part));
+        write_name(to, part, (is_first && !is_local) || !is_plain(name));
+        write_index(to, part);
+        if (const std::string slice = file_.plain(part.attribute("SliceAccessModifier"));
+            !slice.empty() && slice != "undef")
+            to.write(".%" + upper(slice), place(part));
+        is_first = false;
+    }
+}
+
+void SimaticAccess::write_index(Excerpts& to, pugi::xml_node component) const {
+    if (has_tokens(component)) return write_tokens(to, component);
+    std::string_view between = "[";
+    for (const pugi::xml_node index : component.children("Access")) {
+        to.write(between, place(index));
+        to.append(text_of(index));
+        between = ", ";
+    }
+    if (between != "[") to.write("]", place(component));
+}
+
+/// A literal as it is written, or a constant by its name.
+void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool is_local) const {
+    if (const auto value = constant.child("ConstantValue")) return file_.copy(to, value);
+    if (is_local) to.write("#", place(constant));
+    write_name(to, constant, !is_local);
+}
+
+/// Bits from the beginning of an area.
+void SimaticAccess::write_address(Excerpts& to, pugi::xml_node address) const {
+    const std::string area = file_.plain(address.attribute("Area"));
+    const std::string type = lower(file_.plain(address.attribute("Type")));
+    const std::uint64_t bits = address.attribute("BitOffset").as_ullong();
+    const char letter = area == "Input" ? 'I' : area == "Output" ? 'Q' : 'M';
+    const char* size = type == "byte"                      ? "B"
+                       : type == "word" || type == "int"   ? "W"
+                       : type == "dword" || type == "dint" ? "D"
+                                                           : "";
+    to.write(*size == '\0' ? fmt::format("%{}{}.{}", letter, bits / 8, bits % 8)
+                           : fmt::format("%{}{}{}", letter, size, bits / 8),
+             place(address));
+}
+
+/// `"Fc"(...)`, `#motor(...)`, `#delay.TON(...)`, `NORM_X(...)`.
+void SimaticAccess::write_call(Excerpts& to, pugi::xml_node call) const {
+    const auto instance = call.child("Instance");
+    if (instance) write_components(to, instance, is_local(scope_of(instance)));
+    if (is_called(call, "Instruction")) {
+        if (instance) to.write(".", place(call));
+        file_.copy(to, call.attribute("Name"));
+    } else if (!instance) {
+        write_name(to, call, true);
+    }
+    for (const pugi::xml_node part : call.children())
+        if (!is_called(part, "Instance")) write_token(to, part);
+}
+
+void SimaticAccess::write_name(Excerpts& to, pugi::xml_node named, bool is_quoted) const {
+    if (is_quoted) to.write("\"", place(named));
+    file_.copy(to, named.attribute("Name"));
+    if (is_quoted) to.write("\"", place(named));
+}
+
+}  // namespace lineshaft::projects
