@@ -182,6 +182,18 @@ void add_reference_orders(Net& net) {
             net.orders.push_back({*at, *std::next(at)});
 }
 
+/// A slave takes what its master has just done, where that stands before it in the file.
+void add_orders_of_handles(Net& net) {
+    std::map<std::pair<int, const BlockType*>, int> last;  // by task and kind
+    for (int i = 0; i < static_cast<int>(net.instances.size()); ++i) {
+        const Instance& instance = net.instance(i);
+        if (!instance.known() || instance.type->handle.empty()) continue;
+        const auto [before, is_first] = last.try_emplace({instance.task, instance.type}, i);
+        if (!is_first) net.orders.push_back({before->second, i, true});
+        before->second = i;
+    }
+}
+
 /// A block waits for its sources, and what takes its last scan's outputs comes before it.
 void add_orders(Net& net) {
     for (const Wire& wire : net.wires) {
@@ -201,6 +213,7 @@ void resolve_wires(Resolving& to) {
         if (assignment.wire) connect(to, assignment);
     add_orders(to.net);
     add_reference_orders(to.net);
+    add_orders_of_handles(to.net);
 }
 
 }  // namespace lineshaft

@@ -132,7 +132,9 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
             code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
     const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
-    if (are_texts || (same_type(from, *target) && from.is_character == target->is_character)) {
+    const bool is_kept = value->place.dialect().reckons_wide && from.is_integer();
+    if (are_texts ||
+        (same_type(from, *target) && from.is_character == target->is_character && !is_kept)) {
         e = make_copy(c, *value);
         return e->type;
     }
@@ -149,6 +151,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     convert(c, value, *target);
     e = value;
     e->place = place;
+    e->conversion.is_written = true;
     e->conversion.truncates = e->kind == E::converted && read->truncates;
     e->conversion.has_sign = target->kind == Kind::text && from.is_integer() &&
                              place.dialect().texts_of_integers_have_signs;

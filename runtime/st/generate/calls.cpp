@@ -244,10 +244,8 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
     const Location frame = call_routine(w, e);
     const Routine& routine = *e.routine;
     const std::uint32_t slots = slots_of(w, *routine.result->type);
-    const bool is_function = routine.is_function();
-    const Location from = e.is_dispatched
-                              ? parameter(w, frame, e, *routine.result)
-                              : part(w, is_function ? frame : method_base(w, e), *routine.result);
+    const Location from =
+        e.is_dispatched ? parameter(w, frame, e, *routine.result) : part(w, frame, *routine.result);
     const Slot to = slots == 1 ? w.result(wanted) : w.new_temporary(slots);
     if (slots == 1)
         store(w, {Mode::slot, to}, load(w, from, to));

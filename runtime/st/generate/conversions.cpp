@@ -103,6 +103,12 @@ Slot attempted(Writing& w, const Expression& e, Slot wanted) {
     return w.emit(Op::attempt, wanted, from, method_number(w, *block.routine));
 }
 
+/// Of what has not been kept in a type of its own.
+Slot convert_wide(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    if (to.is_real()) return convert(w, slot, lint_type, to, false, wanted);
+    return to.bits == 64 ? slot : w.emit(of_type(Op::wrap_sint, to.plain()), wanted, slot);
+}
+
 Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
@@ -132,6 +138,9 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
                       w.emit(Op::integer_of_text, none, text));
     }
     if (e.conversion.is_bcd) return convert_bcd(w, e, wanted);
+    if (!e.conversion.is_written && is_wide(w, operand) &&
+        (e.type->is_number() || e.type->is_bits()))
+        return convert_wide(w, wide_value(w, operand), *e.type, wanted);
     return convert(w, value(w, operand), *operand.type, *e.type, e.conversion.truncates, wanted);
 }
 

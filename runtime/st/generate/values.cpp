@@ -22,8 +22,28 @@ Slot exact(Writing& w, Word op, const Type& type, Slot a, Slot b, Slot wanted) {
     return narrow ? within(w, type, made) : made;
 }
 
+bool is_arithmetic(const Expression& e) {
+    if (e.kind == E::unary) return e.op == Word::minus;
+    return e.kind == E::binary &&
+           (e.op == Word::plus || e.op == Word::minus || e.op == Word::times ||
+            e.op == Word::divided || e.op == Word::mod_);
+}
+
+Op wide_op(Word op) {
+    return op == Word::plus    ? Op::add_lint
+           : op == Word::minus ? Op::sub_lint
+           : op == Word::times ? Op::mul_lint
+           : op == Word::mod_  ? Op::mod_lint
+                               : Op::div_lint;
+}
+
+/// What stands left of `later`, as wide_value() has it.
+Slot wide_value_before(Writing& w, const Expression& e, const Expression& later) {
+    return is_wide(w, e) ? wide_value(w, e) : value_before(w, e, later);
+}
+
 Slot unary(Writing& w, const Expression& e, Slot wanted) {
-    const Slot operand = value(w, *e.operands[0]);
+    const Slot operand = wide_value(w, *e.operands[0]);
     const Type& type = *e.type;
     if (e.op == Word::plus) return operand;
     if (e.op == Word::not_) {
@@ -44,7 +64,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
-    const Slot a = value_before(w, left, right), b = value(w, right);
+    const Slot a = wide_value_before(w, left, right), b = wide_value(w, right);
     return compare(w, e.op, *left.type, a, b, wanted);
 }
 
@@ -64,7 +84,8 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
     if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
     if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
     const Type& type = *e.type;
-    Slot a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);
+    const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
+    const Slot b = wide_value(w, *e.operands[1]);
     if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
         const Slot real = w.emit(Op::lreal_from_signed, none, a);
         const Slot product =
@@ -96,6 +117,9 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
                       wanted, a, b);
     if (w.options.overflow_faults && type.kind == Kind::integer)
         return exact(w, e.op, type, a, b, wanted);
+    const bool is_quotient = e.op == Word::divided || e.op == Word::mod_;
+    if (is_quotient && is_wide(w, e))
+        return w.emit(of_type(Op::wrap_sint, type), wanted, w.emit(wide_op(e.op), none, a, b));
     const Op family = e.op == Word::mod_
                           ? Op::mod_sint
                           : of_op(Op::add_sint, Op::sub_sint, Op::mul_sint, Op::div_sint);
@@ -165,6 +189,21 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
         default:
             return w.constant_slot(0);
     }
+}
+
+bool is_wide(const Writing& w, const Expression& e) {
+    const bool is_whole = e.type && (e.type->kind == Kind::integer || e.type->is_bits());
+    if (!is_whole || e.type->bits >= 64 || w.options.overflow_faults) return false;
+    if (e.kind == E::converted) return !e.conversion.is_written && is_wide(w, *e.operands[0]);
+    return is_arithmetic(e) && e.place.dialect().reckons_wide;
+}
+
+Slot wide_value(Writing& w, const Expression& e) {
+    if (!is_wide(w, e)) return value(w, e);
+    if (e.kind == E::converted) return wide_value(w, *e.operands[0]);
+    if (e.kind == E::unary) return w.emit(Op::neg_lint, none, wide_value(w, *e.operands[0]));
+    const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
+    return w.emit(wide_op(e.op), none, a, wide_value(w, *e.operands[1]));
 }
 
 void value_to(Writing& w, const Expression& e, Slot to) {

@@ -9,6 +9,11 @@ namespace lineshaft::st {
 Slot value(Writing& w, const Expression& e, Slot wanted = none);
 void value_to(Writing& w, const Expression& e, Slot to);
 
+/// Whether a whole number is beyond what its type holds, as CODESYS' dialect reckons.
+bool is_wide(const Writing& w, const Expression& e);
+/// A value as it is reckoned: in 64 bits, of what is not kept in its type before.
+Slot wide_value(Writing& w, const Expression& e);
+
 /// A value that stays what it is while `later` is computed: operands go from left to right.
 Slot value_before(Writing& w, const Expression& e, const Expression& later);
 

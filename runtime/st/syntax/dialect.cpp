@@ -36,7 +36,8 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .is_loose = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
-                         .texts_have_any_length = true};
+                         .texts_have_any_length = true,
+                         .reckons_wide = true};
 
 const Dialect scl = {.sign_precedes_power = false,
                      .sets_variables_of_instances = true,

@@ -31,7 +31,8 @@ struct Dialect {
     bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
     bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
-    bool bool_is_number = false;             ///< a BOOL is 0 or 1 where a number is due
+    bool reckons_wide = false;    ///< whole numbers in 64 bits, until they are kept, as on x64
+    bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
