@@ -545,6 +545,36 @@ def check_left_over():
     assert "'Drawn' is drawn" in run("test", "rest", code=1)
 
 
+POWER = "Enable := TRUE, Enable_Positive := TRUE, Enable_Negative := TRUE"
+
+
+def moved(axis, power, move, distance):
+    """Switches an axis on and moves it."""
+    return (f"{power}(Axis := {axis}, {POWER});\n"
+            f"{move}(Axis := {axis}, Execute := {power}.Status, Distance := {distance}, Velocity := 100.0);\n")
+
+
+def check_axes_of_lists():
+    """Axes of one name in two lists are two."""
+    for name in ("Feed", "Cut", "Saw"):
+        axis = "Blade" if name == "Saw" else "Axis"
+        twincat("lists", "GVL", f"GVL_{name}", "{attribute 'qualified_only'}\nVAR_GLOBAL\n " + axis + " : AXIS_REF;\nEND_VAR")
+    twincat("lists", "POU", "MAIN", "PROGRAM MAIN\nVAR p, q, r : MC_Power; a, b, d : MC_MoveRelative; x, y : LREAL; END_VAR",
+            moved("GVL_Feed.Axis", "p", "a", 10.0) + moved("GVL_Cut.Axis", "q", "b", -20.0) + moved("GVL_Saw.Blade", "r", "d", 5.0) +
+            "x := GVL_Feed.Axis.NcToPlc.ActPos; y := GVL_Cut.Axis.NcToPlc.ActPos;")
+    write("lists/PlcTask.TcTTO", TASK)
+    plcproj("lists/Lists.plcproj", "Lists", ["GVL_Feed.TcGVL", "GVL_Cut.TcGVL", "GVL_Saw.TcGVL", "MAIN.TcPOU", "PlcTask.TcTTO"])
+    run("new", "lists", "--from", "lists")
+    text = (work / "lists.yaml").read_text()
+    assert "  GVL_Feed_Axis: {type: axis" in text and "  GVL_Cut_Axis: {type: axis" in text and "  Blade: {type: axis" in text, text
+    write("lists.yaml", text + "expect:\n  - {at: end, MAIN.x: 10, within: 1e-9}\n  - {at: end, MAIN.y: -20, within: 1e-9}\n"
+          "  - {at: end, Blade.position: 5 mm, within: 1e-9 mm}\n")
+    run("run", "lists.yaml", "--quiet")
+    twincat("lists", "POU", "MAIN", "PROGRAM MAIN\nVAR p, q, r : MC_Power; END_VAR",
+            "p(Axis := Axis); q(Axis := GVL_Feed.Axis); r(Axis := GVL_Cut.Axis);")
+    assert "'Axis' stands in several lists" in run("check", "lists", code=2)
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -621,6 +651,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_named_programs()
     check_lost_bases()
     check_left_over()
+    check_axes_of_lists()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

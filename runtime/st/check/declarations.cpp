@@ -113,6 +113,21 @@ const Variable* in_another_list(Checking& c, const DeclarationBlock& block, cons
     return is_of_list && known->name.place.source != name.place.source ? known : nullptr;
 }
 
+/// Axes of one name in several lists are several: each is called by its list and its name.
+void declare_axis(Checking& c, const DeclarationBlock& block, Variable& axis) {
+    const auto name_by_list = [&](Checking::ListedAxis& listed) {
+        const std::string_view list = listed.list.substr(listed.list.rfind('.') + 1);
+        std::string& name = c.checked.globals[static_cast<std::size_t>(listed.global)].name;
+        if (!list.empty()) name = fmt::format("{}_{}", list, listed.name);
+    };
+    declare_object(c, axis);
+    Checking::ListedAxis own{block.list, axis.name.text, axis.global};
+    const auto [first, is_first] = c.listed_axes.emplace(axis.name.text, own);
+    if (is_first || first->second.list == block.list) return;
+    name_by_list(first->second);
+    name_by_list(own);
+}
+
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
@@ -126,7 +141,10 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
         return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     c.globals.emplace(in_list, variable);
-    if (type && type->kind == Kind::handle) return declare_object(c, *variable);
+    if (type && type->kind == Kind::handle) {
+        declare_axis(c, block, *variable);
+        return variable;
+    }
     variable->text = name.text;
     variable->constant = block.constant;
     variable->retain = block.retain;
