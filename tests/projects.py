@@ -575,6 +575,29 @@ def check_axes_of_lists():
     assert "'Axis' stands in several lists" in run("check", "lists", code=2)
 
 
+def check_called_programs():
+    """Axes in a PROGRAM that MAIN calls, and in instances in it; what is called is not scanned by its task as well."""
+    twincat("called", "POU", "MAIN", "PROGRAM MAIN\nVAR p : MC_Power; END_VAR", "Axes();")
+    twincat("called", "POU", "Axes", "PROGRAM Axes\nVAR own : AXIS_REF; p : MC_Power; a : MC_MoveRelative; "
+            "cells : ARRAY[1..2] OF Cell; calls : INT; END_VAR",
+            moved("own", "p", "a", 3.0) + "cells[1](way := 4.0); cells[2](way := 8.0); calls := calls + 1;")
+    twincat("called", "POU", "Cell", "FUNCTION_BLOCK Cell\nVAR_INPUT way : LREAL; END_VAR\n"
+            "VAR axis : AXIS_REF; p : MC_Power; a : MC_MoveRelative; END_VAR", moved("axis", "p", "a", "way"))
+    twincat("called", "POU", "Other", "PROGRAM Other\nVAR n : INT; END_VAR", "n := n + 1;")
+    write("called/PlcTask.TcTTO", TASK)
+    plcproj("called/Called.plcproj", "Called", ["Axes.TcPOU", "Cell.TcPOU", "MAIN.TcPOU", "Other.TcPOU", "PlcTask.TcTTO"])
+    run("new", "called", "--from", "called")
+    text = (work / "called.yaml").read_text()
+    assert 'Axes: {type: Axes, task: PlcTask, called: true, own: Axes_own, "cells[1].axis": Axes_cells_1__axis' in text, text
+    assert "Other:" not in text, text
+    write("called.yaml", text + "expect:\n  - {at: end, Axes_own.position: 3 mm, within: 1e-9 mm}\n  - {at: end, Axes.calls: 101}\n"
+          "  - {at: end, Axes_cells_2__axis.position: 8 mm, within: 1e-9 mm}\n")
+    run("run", "called.yaml", "--quiet")
+    write("called.yaml", text.replace("MAIN: {type: MAIN, task: PlcTask}", "MAIN: {type: MAIN, task: PlcTask, called: true}"))
+    said = run("check", "called.yaml", code=2)
+    assert "error[L0213]: 'MAIN' (MAIN) is 'called', and no block's sources name it" in said, said
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -652,6 +675,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()
+    check_called_programs()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")
