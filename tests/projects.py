@@ -598,6 +598,32 @@ def check_called_programs():
     assert "error[L0213]: 'MAIN' (MAIN) is 'called', and no block's sources name it" in said, said
 
 
+def check_axes_of_suites():
+    """Each AXIS_REF that a suite, what it tests or a list keeps has an axis."""
+    twincat("suites", "GVL", "GVL", "{attribute 'qualified_only'}\nVAR_GLOBAL\n all : ARRAY[1..2] OF AXIS_REF;\n whole : Machine;\nEND_VAR")
+    twincat("suites", "DUT", "Machine", "TYPE Machine : STRUCT axis : AXIS_REF; END_STRUCT END_TYPE")
+    twincat("suites", "POU", "Inner", "FUNCTION_BLOCK Inner\nVAR axis : AXIS_REF; p : MC_Power; a : MC_MoveRelative; END_VAR\n"
+            "VAR_OUTPUT done : BOOL; END_VAR", moved("axis", "p", "a", 7.0) + "done := a.Done AND axis.NcToPlc.ActPos > 6.99;")
+    axes = ["GVL.all[1]", "GVL.all[2]", "GVL.whole.axis", "own", "MAIN.of_main", "Called.of_called"]
+    body = "inner();\n" + "".join(moved(axis, f"p[{i}]", f"a[{i}]", 1.5 * i + 1) for i, axis in enumerate(axes)) + "done := inner.done;\n"
+    body += "".join(f"done := done AND a[{i}].Done AND ABS({axis}.NcToPlc.ActPos - {1.5 * i + 1}) < 0.01;\n" for i, axis in enumerate(axes))
+    twincat("suites", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR own : AXIS_REF; inner : Inner; done : BOOL;\n"
+            f"p : ARRAY[0..{len(axes) - 1}] OF MC_Power; a : ARRAY[0..{len(axes) - 1}] OF MC_MoveRelative; END_VAR",
+            "TEST('moves all of them');\n" + body + "IF done THEN TEST_FINISHED(); END_IF")
+    twincat("suites", "POU", "MAIN", "PROGRAM MAIN\nVAR suite : Suite; of_main : AXIS_REF; END_VAR", "TcUnit.RUN();")
+    twincat("suites", "POU", "Called", "PROGRAM Called\nVAR of_called : AXIS_REF; END_VAR")
+    write("suites/PlcTask.TcTTO", TASK)
+    plcproj("suites/Suites.plcproj", "Suites", ["GVL.TcGVL", "Machine.TcDUT", "Inner.TcPOU", "Suite.TcPOU", "Called.TcPOU", "MAIN.TcPOU", "PlcTask.TcTTO"],
+            [("TcUnit", "TcUnit")])
+    assert "1 of 1 passed" in run("test", "suites")
+    assert "1 of 1 passed" in run("test", "suites", "--no-native")
+    twincat("suites", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite", "m();",
+            method("METHOD m\nVAR lost : AXIS_REF; END_VAR\nVAR_INST p : MC_Power; END_VAR",
+                   f"TEST('waits'); p(Axis := lost, {POWER}); IF p.Status THEN TEST_FINISHED(); END_IF"))
+    said = run("test", "suites", code=1)
+    assert "TEST_FINISHED is missing; 'lost' in line" in said and "has no axis, as it is of a call: declare it in VAR of 'Suite'" in said, said
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -676,6 +702,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_left_over()
     check_axes_of_lists()
     check_called_programs()
+    check_axes_of_suites()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

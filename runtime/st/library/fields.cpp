@@ -291,6 +291,28 @@ void add_data_blocks(Library::Made& made, const Options& options) {
     }
 }
 
+std::vector<KeptReference> kept_references(Library::Made& made, const Routine& program,
+                                           const Catalog& standard) {
+    std::vector<KeptReference> kept;
+    const auto note = [&](const KindContext& kind, int global) {
+        for (const Field& field : kind.fields)
+            if (!field.refers.empty() && field.global.empty() && !field.required)
+                kept.push_back({global, field.offset, standard.find(field.refers)});
+    };
+    KindContext& own = add_kind(made, program.name, *program.type, {});
+    write_fields(made, own, program);
+    note(own, -1);
+    for (std::size_t i = 0; i < made.checked.globals.size(); ++i) {
+        const Global& global = made.checked.globals[i];
+        const bool is_own = is_program(global) && global.type == program.type;
+        if (global.object || is_own || global.name == image_name) continue;
+        KindContext& kind = add_kind(made, global.name, *global.type, {});
+        write_fields(made, kind, global);
+        note(kind, static_cast<int>(i));
+    }
+    return kept;
+}
+
 void write_fields(Library::Made& made, KindContext& kind, const Global& global) {
     FieldWriter fields(made, kind);
     if (global.type->kind == Type::Kind::block) {
