@@ -51,6 +51,11 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
     for (std::size_t i = 0; i < globals; ++i)
         if (const Variable* object = made.checked.globals[i].object)
             objects_.emplace_back(object->type->standard, places_[i]);
+    for (const Variable& variable : made.checked.variables)
+        if (const std::int64_t named = variable.named; named >= 0)
+            std::memcpy(
+                global(static_cast<std::size_t>(variable.global)) + 8 * std::size_t{variable.slot},
+                &named, sizeof named);
     for (std::size_t i = 0; i < kept.size(); ++i) {
         const std::int64_t number = std::ssize(made.checked.globals) + static_cast<int>(i);
         std::byte* const owner =

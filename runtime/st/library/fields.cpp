@@ -127,7 +127,7 @@ class FieldWriter {
                     kind_.texts.push_back(made_.names.emplace_back(name));
                 return;
             case Kind::handle:
-                write_handle(type, offset, name, direction);
+                write_handle(type, offset, name, direction, variable);
                 return;
             default:
                 write_scalar(type, offset, name, direction, variable);
@@ -164,11 +164,13 @@ class FieldWriter {
     /// `VAR axis : AXIS_REF` may be given one of the program's, as TwinCAT links it to one of its
     /// numerical control. What a caller gives to a part is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
-                      Direction direction) {
+                      Direction direction, const Variable& variable) {
         const bool is_given = direction == Direction::in_out || direction == Direction::input;
         if (!is_given && !is_own_) return;
         Field& field = add(name, Direction::in_out, lineshaft::Type::integer, offset);
         field.refers = type.standard->name;
+        if (variable.named >= 0)
+            field.global = made_.checked.globals[static_cast<std::size_t>(variable.named)].name;
         field.doc = type.standard->doc;
         field.required = is_given;
     }

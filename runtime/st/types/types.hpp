@@ -156,6 +156,7 @@ struct Variable {
     std::uint32_t byte = 0;  ///< of a boolean of a kind of the catalogue, in its memory
     bool is_byte = false;
     int global = -1;
+    int named = -1;  ///< an AXIS_REF that is to this global, a block of the program, all the time
     ImageAddress address = {};     ///< in the process image
     bool is_direct = false;        ///< no variable: an address that code names
     Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
