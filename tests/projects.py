@@ -624,6 +624,32 @@ def check_axes_of_suites():
     assert "TEST_FINISHED is missing; 'lost' in line" in said and "has no axis, as it is of a call: declare it in VAR of 'Suite'" in said, said
 
 
+def check_axes_that_are_referred_to():
+    """A pointer or a reference to an axis of a list, or to what a method was given, is to that axis from then on."""
+    twincat("referred", "GVL", "GVL", "VAR_GLOBAL\n one, two : AXIS_REF;\nEND_VAR")
+    members = "".join(method(*each).replace('Name="m"', f'Name="{name}"') for name, each in {
+        "Take": ("METHOD Take\nVAR_IN_OUT axis : AXIS_REF; END_VAR", "Keep(axis := axis);"),
+        "Keep": ("METHOD Keep\nVAR_IN_OUT axis : AXIS_REF; END_VAR", "kept REF= axis; pointed := ADR(axis);")}.items())
+    twincat("referred", "POU", "Drive", "FUNCTION_BLOCK Drive\nVAR_INPUT given : REFERENCE TO AXIS_REF; END_VAR\n"
+            "VAR kept : REFERENCE TO AXIS_REF; pointed : POINTER TO AXIS_REF; p, q, r : MC_Power; a, b, d : MC_MoveRelative; END_VAR",
+            "IF __ISVALIDREF(given) THEN\n" + moved("given", "p", "a", 10.0) + "END_IF\nIF __ISVALIDREF(kept) THEN\n" +
+            moved("kept", "q", "b", 20.0) + "END_IF\nIF pointed <> 0 AND b.Done THEN\n" + moved("pointed^", "r", "d", 5.0) + "END_IF", members)
+    twincat("referred", "POU", "MAIN", "PROGRAM MAIN\nVAR own : AXIS_REF; of_list, of_pointer, of_own, of_two : Drive; "
+            "pointer : POINTER TO AXIS_REF; taken, same : BOOL; END_VAR",
+            "IF NOT taken THEN of_own.Take(axis := own); of_two.Take(axis := GVL.two); taken := TRUE; END_IF\n"
+            "of_list(given := one); pointer := ADR(GVL.two); IF of_two.d.Done THEN of_pointer(given := pointer^); END_IF of_own(); of_two();\n"
+            "same := of_two.pointed = ADR(GVL.two) AND of_own.pointed = ADR(own);")
+    write("referred/PlcTask.TcTTO", TASK)
+    plcproj("referred/Referred.plcproj", "Referred", ["GVL.TcGVL", "Drive.TcPOU", "MAIN.TcPOU", "PlcTask.TcTTO"])
+    run("new", "referred", "--from", "referred")
+    text = (work / "referred.yaml").read_text()
+    write("referred.yaml", text.replace("run: {for: 1 s}", "run: {for: 3 s}") + "expect:\n  - {at: end, one.position: 10 mm, within: 1e-9 mm}\n"
+          "  - {at: end, two.position: 35 mm, within: 1e-9 mm}\n  - {at: end, MAIN_own.position: 25 mm, within: 1e-9 mm}\n"
+          "  - {at: end, MAIN.same: true}\n")
+    run("run", "referred.yaml", "--quiet")
+    run("run", "referred.yaml", "--quiet", "--no-native")
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -703,6 +729,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_axes_of_lists()
     check_called_programs()
     check_axes_of_suites()
+    check_axes_that_are_referred_to()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

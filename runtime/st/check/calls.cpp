@@ -157,6 +157,10 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);
     if (!given || !type) return;
     if (type->kind == Kind::handle && given->is_object()) {
+        if (parameter.space == Space::reference) {
+            take_place_of_object(c, value);
+            return check_given(c, argument, parameter, *value->type);
+        }
         if (coerce(c, value, *type)) return;
     }
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;

@@ -284,6 +284,14 @@ void begin_anew(Checking& c, Routine& routine, Variable& variable) {
     routine.call_begins.push_back(make_assignment(c, like.place, use_of(variable), use_of(fresh)));
 }
 
+/// A block keeps which axis it was given last. Of a call the variable itself is meant, which a
+/// pointer to it outlives.
+bool is_copied(const Routine& routine, const Type* type) {
+    const Source& source = *routine.pou->name.place.source;
+    const bool has_pointers = &source.dialect != &scl && !source.is_prelude();
+    return type && type->is_handle() && (routine.has_instances() || !has_pointers);
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input ||
@@ -305,7 +313,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         variable->retain = block.retain;
         variable->of = routine.pou;
         variable->access = block.access;
-        if (section == Section::in_out && !(type && type->is_handle()))
+        if (section == Section::in_out && !is_copied(routine, type))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         const bool is_of_base = !added && it->second->of != routine.pou;
