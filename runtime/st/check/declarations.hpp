@@ -74,6 +74,12 @@ void bring_up_to_date(Checking& c, Routine& routine);
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);
 
+// axes_of_tests.cpp
+
+/// Each AXIS_REF that a TEST, what it tests or a global keeps has a block of the program, which the
+/// TEST begins with giving it.
+void give_axes_to_tests(Checking& c);
+
 // order.cpp
 
 /// The routine runs, or is made of, what is in `type`.

@@ -217,6 +217,7 @@ void check_initial_values(Checking& c) {
         }
     }
     c.routine = nullptr;
+    give_axes_to_tests(c);
     begin_globals(c);
 }
 
