@@ -280,7 +280,8 @@ struct TypeDeclaration {
     Token name = {};
     TypeText* type = nullptr;
     Expression* initial = nullptr;
-    bool is_lost = false;  ///< not understood
+    bool is_lost = false;          ///< not understood
+    bool texts_are_names = false;  ///< `{attribute 'to_string'}`
 };
 
 /// Part of a source where names may be written without the namespace that they are in: a namespace,

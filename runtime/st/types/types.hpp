@@ -73,6 +73,7 @@ struct Type {
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
+    bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
