@@ -410,7 +410,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         if (of->kind == Kind::block || of->kind == Kind::interface) {
             if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
                 Routine& method = overload_of(c, *e, of->routine->overloads, *first);
-                if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
+                if (!method.pou->follows_init &&
+                    !is_accessible(c, method.pou->access, *method.owner, callee.token))
                     return nullptr;
                 return check_method_call(c, e, method, *callee.operands[0], as_statement);
             }

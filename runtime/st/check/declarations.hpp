@@ -55,6 +55,9 @@ bool is_constructed(const Type* type);
 /// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
 
+/// Calls what stands behind `{attribute 'call_after_init'}` of these instances.
+void follow_init(Checking& c, Variable& variable);
+
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type);
 
 /// Calls FB_init of what is made in a run, at `part`, with `values`.

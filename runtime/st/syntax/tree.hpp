@@ -267,6 +267,7 @@ struct Pou {
     Accessor accessor = Accessor::none;   ///< of a method
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
+    bool follows_init = false;            ///< a method that is called once behind FB_init
     bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;    ///< not understood
     bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
