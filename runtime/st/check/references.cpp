@@ -1,5 +1,6 @@
 #include "runtime/st/check/references.hpp"
 
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
