@@ -545,6 +545,111 @@ def check_left_over():
     assert "'Drawn' is drawn" in run("test", "rest", code=1)
 
 
+POWER = "Enable := TRUE, Enable_Positive := TRUE, Enable_Negative := TRUE"
+
+
+def moved(axis, power, move, distance):
+    """Switches an axis on and moves it."""
+    return (f"{power}(Axis := {axis}, {POWER});\n"
+            f"{move}(Axis := {axis}, Execute := {power}.Status, Distance := {distance}, Velocity := 100.0);\n")
+
+
+def check_axes_of_lists():
+    """Axes of one name in two lists are two."""
+    for name in ("Feed", "Cut", "Saw"):
+        axis = "Blade" if name == "Saw" else "Axis"
+        twincat("lists", "GVL", f"GVL_{name}", "{attribute 'qualified_only'}\nVAR_GLOBAL\n " + axis + " : AXIS_REF;\nEND_VAR")
+    twincat("lists", "POU", "MAIN", "PROGRAM MAIN\nVAR p, q, r : MC_Power; a, b, d : MC_MoveRelative; x, y : LREAL; END_VAR",
+            moved("GVL_Feed.Axis", "p", "a", 10.0) + moved("GVL_Cut.Axis", "q", "b", -20.0) + moved("GVL_Saw.Blade", "r", "d", 5.0) +
+            "x := GVL_Feed.Axis.NcToPlc.ActPos; y := GVL_Cut.Axis.NcToPlc.ActPos;")
+    write("lists/PlcTask.TcTTO", TASK)
+    plcproj("lists/Lists.plcproj", "Lists", ["GVL_Feed.TcGVL", "GVL_Cut.TcGVL", "GVL_Saw.TcGVL", "MAIN.TcPOU", "PlcTask.TcTTO"])
+    run("new", "lists", "--from", "lists")
+    text = (work / "lists.yaml").read_text()
+    assert "  GVL_Feed_Axis: {type: axis" in text and "  GVL_Cut_Axis: {type: axis" in text and "  Blade: {type: axis" in text, text
+    write("lists.yaml", text + "expect:\n  - {at: end, MAIN.x: 10, within: 1e-9}\n  - {at: end, MAIN.y: -20, within: 1e-9}\n"
+          "  - {at: end, Blade.position: 5 mm, within: 1e-9 mm}\n")
+    run("run", "lists.yaml", "--quiet")
+    twincat("lists", "POU", "MAIN", "PROGRAM MAIN\nVAR p, q, r : MC_Power; END_VAR",
+            "p(Axis := Axis); q(Axis := GVL_Feed.Axis); r(Axis := GVL_Cut.Axis);")
+    assert "'Axis' stands in several lists" in run("check", "lists", code=2)
+
+
+def check_called_programs():
+    """Axes in a PROGRAM that MAIN calls, and in instances in it; what is called is not scanned by its task as well."""
+    twincat("called", "POU", "MAIN", "PROGRAM MAIN\nVAR p : MC_Power; END_VAR", "Axes();")
+    twincat("called", "POU", "Axes", "PROGRAM Axes\nVAR own : AXIS_REF; p : MC_Power; a : MC_MoveRelative; "
+            "cells : ARRAY[1..2] OF Cell; calls : INT; END_VAR",
+            moved("own", "p", "a", 3.0) + "cells[1](way := 4.0); cells[2](way := 8.0); calls := calls + 1;")
+    twincat("called", "POU", "Cell", "FUNCTION_BLOCK Cell\nVAR_INPUT way : LREAL; END_VAR\n"
+            "VAR axis : AXIS_REF; p : MC_Power; a : MC_MoveRelative; END_VAR", moved("axis", "p", "a", "way"))
+    twincat("called", "POU", "Other", "PROGRAM Other\nVAR n : INT; END_VAR", "n := n + 1;")
+    write("called/PlcTask.TcTTO", TASK)
+    plcproj("called/Called.plcproj", "Called", ["Axes.TcPOU", "Cell.TcPOU", "MAIN.TcPOU", "Other.TcPOU", "PlcTask.TcTTO"])
+    run("new", "called", "--from", "called")
+    text = (work / "called.yaml").read_text()
+    assert 'Axes: {type: Axes, task: PlcTask, called: true, own: Axes_own, "cells[1].axis": Axes_cells_1__axis' in text, text
+    assert "Other:" not in text, text
+    write("called.yaml", text + "expect:\n  - {at: end, Axes_own.position: 3 mm, within: 1e-9 mm}\n  - {at: end, Axes.calls: 101}\n"
+          "  - {at: end, Axes_cells_2__axis.position: 8 mm, within: 1e-9 mm}\n")
+    run("run", "called.yaml", "--quiet")
+    write("called.yaml", text.replace("MAIN: {type: MAIN, task: PlcTask}", "MAIN: {type: MAIN, task: PlcTask, called: true}"))
+    said = run("check", "called.yaml", code=2)
+    assert "error[L0213]: 'MAIN' (MAIN) is 'called', and no block's sources name it" in said, said
+
+
+def check_axes_of_suites():
+    """Each AXIS_REF that a suite, what it tests or a list keeps has an axis."""
+    twincat("suites", "GVL", "GVL", "{attribute 'qualified_only'}\nVAR_GLOBAL\n all : ARRAY[1..2] OF AXIS_REF;\n whole : Machine;\nEND_VAR")
+    twincat("suites", "DUT", "Machine", "TYPE Machine : STRUCT axis : AXIS_REF; END_STRUCT END_TYPE")
+    twincat("suites", "POU", "Inner", "FUNCTION_BLOCK Inner\nVAR axis : AXIS_REF; p : MC_Power; a : MC_MoveRelative; END_VAR\n"
+            "VAR_OUTPUT done : BOOL; END_VAR", moved("axis", "p", "a", 7.0) + "done := a.Done AND axis.NcToPlc.ActPos > 6.99;")
+    axes = ["GVL.all[1]", "GVL.all[2]", "GVL.whole.axis", "own", "MAIN.of_main", "Called.of_called"]
+    body = "inner();\n" + "".join(moved(axis, f"p[{i}]", f"a[{i}]", 1.5 * i + 1) for i, axis in enumerate(axes)) + "done := inner.done;\n"
+    body += "".join(f"done := done AND a[{i}].Done AND ABS({axis}.NcToPlc.ActPos - {1.5 * i + 1}) < 0.01;\n" for i, axis in enumerate(axes))
+    twincat("suites", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR own : AXIS_REF; inner : Inner; done : BOOL;\n"
+            f"p : ARRAY[0..{len(axes) - 1}] OF MC_Power; a : ARRAY[0..{len(axes) - 1}] OF MC_MoveRelative; END_VAR",
+            "TEST('moves all of them');\n" + body + "IF done THEN TEST_FINISHED(); END_IF")
+    twincat("suites", "POU", "MAIN", "PROGRAM MAIN\nVAR suite : Suite; of_main : AXIS_REF; END_VAR", "TcUnit.RUN();")
+    twincat("suites", "POU", "Called", "PROGRAM Called\nVAR of_called : AXIS_REF; END_VAR")
+    write("suites/PlcTask.TcTTO", TASK)
+    plcproj("suites/Suites.plcproj", "Suites", ["GVL.TcGVL", "Machine.TcDUT", "Inner.TcPOU", "Suite.TcPOU", "Called.TcPOU", "MAIN.TcPOU", "PlcTask.TcTTO"],
+            [("TcUnit", "TcUnit")])
+    assert "1 of 1 passed" in run("test", "suites")
+    assert "1 of 1 passed" in run("test", "suites", "--no-native")
+    twincat("suites", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite", "m();",
+            method("METHOD m\nVAR lost : AXIS_REF; END_VAR\nVAR_INST p : MC_Power; END_VAR",
+                   f"TEST('waits'); p(Axis := lost, {POWER}); IF p.Status THEN TEST_FINISHED(); END_IF"))
+    said = run("test", "suites", code=1)
+    assert "TEST_FINISHED is missing; 'lost' in line" in said and "has no axis, as it is of a call: declare it in VAR of 'Suite'" in said, said
+
+
+def check_axes_that_are_referred_to():
+    """A pointer or a reference to an axis of a list, or to what a method was given, is to that axis from then on."""
+    twincat("referred", "GVL", "GVL", "VAR_GLOBAL\n one, two : AXIS_REF;\nEND_VAR")
+    members = "".join(method(*each).replace('Name="m"', f'Name="{name}"') for name, each in {
+        "Take": ("METHOD Take\nVAR_IN_OUT axis : AXIS_REF; END_VAR", "Keep(axis := axis);"),
+        "Keep": ("METHOD Keep\nVAR_IN_OUT axis : AXIS_REF; END_VAR", "kept REF= axis; pointed := ADR(axis);")}.items())
+    twincat("referred", "POU", "Drive", "FUNCTION_BLOCK Drive\nVAR_INPUT given : REFERENCE TO AXIS_REF; END_VAR\n"
+            "VAR kept : REFERENCE TO AXIS_REF; pointed : POINTER TO AXIS_REF; p, q, r : MC_Power; a, b, d : MC_MoveRelative; END_VAR",
+            "IF __ISVALIDREF(given) THEN\n" + moved("given", "p", "a", 10.0) + "END_IF\nIF __ISVALIDREF(kept) THEN\n" +
+            moved("kept", "q", "b", 20.0) + "END_IF\nIF pointed <> 0 AND b.Done THEN\n" + moved("pointed^", "r", "d", 5.0) + "END_IF", members)
+    twincat("referred", "POU", "MAIN", "PROGRAM MAIN\nVAR own : AXIS_REF; of_list, of_pointer, of_own, of_two : Drive; "
+            "pointer : POINTER TO AXIS_REF; taken, same : BOOL; END_VAR",
+            "IF NOT taken THEN of_own.Take(axis := own); of_two.Take(axis := GVL.two); taken := TRUE; END_IF\n"
+            "of_list(given := one); pointer := ADR(GVL.two); IF of_two.d.Done THEN of_pointer(given := pointer^); END_IF of_own(); of_two();\n"
+            "same := of_two.pointed = ADR(GVL.two) AND of_own.pointed = ADR(own);")
+    write("referred/PlcTask.TcTTO", TASK)
+    plcproj("referred/Referred.plcproj", "Referred", ["GVL.TcGVL", "Drive.TcPOU", "MAIN.TcPOU", "PlcTask.TcTTO"])
+    run("new", "referred", "--from", "referred")
+    text = (work / "referred.yaml").read_text()
+    write("referred.yaml", text.replace("run: {for: 1 s}", "run: {for: 3 s}") + "expect:\n  - {at: end, one.position: 10 mm, within: 1e-9 mm}\n"
+          "  - {at: end, two.position: 35 mm, within: 1e-9 mm}\n  - {at: end, MAIN_own.position: 25 mm, within: 1e-9 mm}\n"
+          "  - {at: end, MAIN.same: true}\n")
+    run("run", "referred.yaml", "--quiet")
+    run("run", "referred.yaml", "--quiet", "--no-native")
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -621,6 +726,10 @@ with tempfile.TemporaryDirectory() as temporary:
     check_named_programs()
     check_lost_bases()
     check_left_over()
+    check_axes_of_lists()
+    check_called_programs()
+    check_axes_of_suites()
+    check_axes_that_are_referred_to()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

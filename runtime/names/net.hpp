@@ -54,7 +54,7 @@ struct Instance {
     std::int64_t cost = 0;              ///< its own share of its task's [ns]
     std::vector<std::byte> image = {};  ///< as it begins: constants are in place
     std::vector<bool> wired = {};       ///< by field
-    bool is_only_named = false;         ///< a PROGRAM that no task runs, and sources name
+    bool is_only_named = false;         ///< a PROGRAM that no task scans, and sources name
 
     bool known() const { return type && task >= 0; }
     std::string described() const;  ///< `'drive' (servo_drive)`

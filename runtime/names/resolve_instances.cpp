@@ -243,6 +243,24 @@ void assign(Resolving& to, int number, const Node& key, const Node& value) {
     to.assignments.push_back(std::move(assignment));
 }
 
+/// Nothing else would ever execute it.
+void check_called(const Resolving& to) {
+    for (std::size_t i = 0; i < to.program.blocks.size(); ++i) {
+        const auto number = static_cast<int>(i);
+        const Instance& block = to.net.instance(number);
+        const auto names_it = [&](const Reference& reference) {
+            return reference.to == number && !to.net.field(reference.from).global.empty() &&
+                   reference.from.instance != number;
+        };
+        if (!block.is_only_named || !block.known()) continue;
+        if (std::ranges::none_of(to.net.references, names_it))
+            to.read.fail(
+                code::entries_do_not_go_together, to.program.blocks[i].name,
+                fmt::format("{} is 'called', and no block's sources name it", block.described()),
+                "leave 'called' out, and its task scans it");
+    }
+}
+
 }  // namespace
 
 void resolve_instances(Resolving& to) {
@@ -251,11 +269,13 @@ void resolve_instances(Resolving& to) {
         find_type(to, plan.type, block);
         block.task = to.net.find_task(to.read, plan.task, plan.task.text);
         add_cost(to, plan, block);
+        block.is_only_named = plan.called;
         to.net.instance_numbers.emplace(block.name, static_cast<int>(to.net.instances.size()));
         to.net.instances.push_back(std::move(block));
     }
     add_single_blocks(to);
     refer_to_globals(to);
+    check_called(to);
 }
 
 void resolve_assignments(Resolving& to) {

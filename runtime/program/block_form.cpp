@@ -50,6 +50,10 @@ const Form& block_form() {
                       .must("say which task scans it"),
                   key<&BlockPlan::cost>("cost", a_time, "adds to its task's execution time")
                       .by_default("0 s"),
+                  key<&BlockPlan::called>(
+                      "called", a_boolean,
+                      "of a PROGRAM: others call it by its name, so its task does not scan it")
+                      .by_default("false"),
                   key<&BlockPlan::initial>(
                       "initial", named("an output", a_value),
                       "outputs and what they are before the first scan: what previous() then "

@@ -49,6 +49,7 @@ struct BlockPlan {
     Node type;
     Node task;
     std::optional<Node> cost;                         ///< adds to its task's execution time
+    bool called = false;                              ///< by sources: its task does not scan it
     std::vector<std::pair<Node, Node>> initial = {};  ///< outputs and values
     std::vector<std::pair<Node, Node>> ports;         ///< key and value, parameters replaced
 };

@@ -24,6 +24,7 @@ constexpr std::size_t most_signals = 8;
 struct NewBlock {
     std::string name, type, task;
     std::vector<std::pair<std::string, std::string>> axes = {};  ///< that are given to it, by path
+    bool called = false;                                         ///< by the sources of others
 };
 
 struct NewTask {
@@ -123,15 +124,40 @@ std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>&
     return axes;
 }
 
+void keep_those_with_axes(const st::Library& library, std::vector<NewBlock>& blocks) {
+    axes_of(library, blocks);
+    std::erase_if(blocks, [](const NewBlock& block) { return block.axes.empty(); });
+    for (NewBlock& block : blocks) block.axes.clear();
+}
+
 /// Lists of globals that keep axes, in the first task.
 std::vector<NewBlock> lists_with_axes(const st::Library& library, const std::string& task) {
     std::vector<NewBlock> lists;
     for (const BlockType& kind : library.kinds())
         if (kind.single) lists.push_back({std::string(kind.name), std::string(kind.name), task});
-    axes_of(library, lists);
-    std::erase_if(lists, [](const NewBlock& list) { return list.axes.empty(); });
-    for (NewBlock& list : lists) list.axes.clear();
+    keep_those_with_axes(library, lists);
     return lists;
+}
+
+/// Programs that those of tasks name, and that keep axes.
+std::vector<NewBlock> called_with_axes(const st::Library& library,
+                                       const std::vector<NewBlock>& programs) {
+    std::vector<NewBlock> called;
+    for (const BlockType& kind : library.kinds()) {
+        const std::string name(kind.name);
+        const auto scans_it = [&](const NewBlock& block) { return block.type == name; };
+        if (!is_program(kind) || std::ranges::any_of(programs, scans_it)) continue;
+        const auto names_it = [&](const Field& field) { return field.global == kind.name; };
+        const auto caller = std::ranges::find_if(programs, [&](const NewBlock& block) {
+            const auto type = std::ranges::find(library.kinds(), block.type, &BlockType::name);
+            return std::ranges::any_of(type->fields, names_it);
+        });
+        if (caller == programs.end()) continue;
+        NewBlock& block = called.emplace_back(NewBlock{name, name, caller->task});
+        block.called = true;
+    }
+    keep_those_with_axes(library, called);
+    return called;
 }
 
 /// What is plainly named, outputs before all others.
@@ -160,6 +186,7 @@ std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBloc
     text += "blocks:\n";
     for (const NewBlock& block : blocks) {
         text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
+        if (block.called) text += ", called: true";
         for (const auto& [path, axis] : block.axes) {
             const std::string_view mark = path.find('[') == path.npos ? "" : "\"";
             text += fmt::format(", {0}{1}{0}: {2}", mark, path, axis);
@@ -248,6 +275,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     }
     std::vector<NewBlock> blocks = named_blocks(*library, programs);
     std::vector<NewBlock> owners = lists_with_axes(*library, tasks.front().name);
+    std::ranges::move(called_with_axes(*library, programs), std::back_inserter(owners));
     owners.insert(owners.end(), programs.begin(), programs.end());
     std::ranges::move(axes_of(*library, owners), std::back_inserter(blocks));
     std::ranges::move(owners, std::back_inserter(blocks));

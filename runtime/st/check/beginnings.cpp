@@ -136,12 +136,42 @@ Routine* constructor_of(const Type& block) {
     return find_in(block.routine->methods, constructor);
 }
 
+/// Methods of a block with `{attribute 'call_after_init'}`, those of its base first. One that
+/// another replaces is that.
+std::vector<std::string_view> methods_behind(const Routine& block) {
+    std::vector<std::string_view> names;
+    if (block.base) names = methods_behind(*block.base);
+    for (const Routine* method : block.own_methods) {
+        const std::string_view name = method->pou->name.text;
+        const auto is_it = [&](std::string_view other) { return same_name(other, name); };
+        if (method->pou->follows_init && std::ranges::none_of(names, is_it)) names.push_back(name);
+    }
+    return names;
+}
+
+/// FB_init is called first, then what each declares of its variable is assigned, then comes what
+/// follows.
+enum class Phase : std::uint8_t { init, behind_init };
+
 /// Where what is constructed stands, and who counts through its elements.
 struct Constructing {
     Expression like;
     std::deque<Variable>& counters;
     const Pou* of;
+    Phase phase = Phase::init;
 };
+
+/// There is something to call of it then.
+bool is_called(Phase phase, const Type* type) {
+    if (!type) return false;
+    if (type->kind == Kind::array) return is_called(phase, type->element);
+    if (type->kind == Kind::structure)
+        return std::ranges::any_of(
+            type->members, [&](const Variable* member) { return is_called(phase, member->type); });
+    if (type->kind != Kind::block) return false;
+    return phase == Phase::init ? constructor_of(*type) != nullptr
+                                : !methods_behind(*type->routine).empty();
+}
 
 /// `Block[(a := 1), (a := 2)]`: the arguments of each element; null: all have the same.
 const Expression* each_of(const std::vector<Argument>* values) {
@@ -180,7 +210,13 @@ void construct_each(Checking& c, const Constructing& at, const Type& array, cons
 void construct(Checking& c, const Constructing& at, const Type& type,
                const std::vector<Argument>* values, const std::function<Expression*()>& part,
                Block& to) {
-    if (!is_constructed(&type)) return;
+    if (!is_called(at.phase, &type)) return;
+    if (type.kind == Kind::block && at.phase == Phase::behind_init) {
+        for (const std::string_view name : methods_behind(*type.routine))
+            to.push_back(
+                make_call_statement(c, make_call(c, at.like, make_member(c, part(), name), {})));
+        return;
+    }
     if (type.kind == Kind::block)
         return to.push_back(call_constructor(
             c, at.like, part(), values ? *values : std::vector<Argument>{}, *constructor_of(type)));
@@ -191,7 +227,7 @@ void construct(Checking& c, const Constructing& at, const Type& type,
                 [&] { return make_member(c, part(), member->text); }, to);
         return;
     }
-    if (const Expression* list = each_of(values))
+    if (const Expression* list = at.phase == Phase::init ? each_of(values) : nullptr)
         return construct_each(c, at, type, *list, part, to);
     Variable& counter =
         add_hidden(c, at.counters, at.like, fmt::format("index{}", at.counters.size()), lint_type);
@@ -255,11 +291,7 @@ bool is_first(const Checking& c, const Routine& block) {
 }  // namespace
 
 bool is_constructed(const Type* type) {
-    if (!type) return false;
-    if (type->kind == Kind::array) return is_constructed(type->element);
-    if (type->kind == Kind::structure)
-        return std::ranges::any_of(type->members, is_constructed, &Variable::type);
-    return type->kind == Kind::block && constructor_of(*type);
+    return is_called(Phase::init, type);
 }
 
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
@@ -271,7 +303,8 @@ void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
 void construct_one(Checking& c, const Expression& like, Routine& routine, const Type& type,
                    const std::vector<Argument>* values, const std::function<Expression*()>& part,
                    Block& to) {
-    construct(c, {like, routine.variables, routine.pou}, type, values, part, to);
+    for (const Phase phase : {Phase::init, Phase::behind_init})
+        construct(c, {like, routine.variables, routine.pou, phase}, type, values, part, to);
 }
 
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
@@ -285,22 +318,35 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     return true;
 }
 
-void begin_instance(Checking& c, Variable& variable) {
+namespace {
+
+void begin_in(Checking& c, Variable& variable, Phase phase) {
     const Type* type = variable.type;
     const bool is_own = type && variable.space == Space::frame;
+    const bool is_global = variable.space == Space::global && !c.routine;
+    const bool stays =
+        c.routine && (c.routine->has_instances() || variable.section == Section::kept);
+    if (!is_called(phase, type) || !(is_own ? stays : is_global)) return;
+    const Expression like = like_name(variable.name, variable.name.place);
+    Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
+    construct(
+        c, {like, of.variables, of.pou, phase}, *type, variable.constructed,
+        [&] { return named(c, like, variable); }, is_own ? of.begins : of.call_begins);
+}
+
+}  // namespace
+
+void begin_instance(Checking& c, Variable& variable) {
+    const Type* type = variable.type;
     if (variable.constructed && !variable.constructed->empty() && !is_constructed(type)) {
         if (type) refuse_constructor_arguments(c, variable.name.place, *type);
         return;
     }
-    const bool is_global = variable.space == Space::global && !c.routine;
-    const bool stays =
-        c.routine && (c.routine->has_instances() || variable.section == Section::kept);
-    if (!is_constructed(type) || !(is_own ? stays : is_global)) return;
-    const Expression like = like_name(variable.name, variable.name.place);
-    Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
-    construct(
-        c, {like, of.variables, of.pou}, *type, variable.constructed,
-        [&] { return named(c, like, variable); }, is_own ? of.begins : of.call_begins);
+    begin_in(c, variable, Phase::init);
+}
+
+void follow_init(Checking& c, Variable& variable) {
+    begin_in(c, variable, Phase::behind_init);
 }
 
 void begin_globals(Checking& c) {

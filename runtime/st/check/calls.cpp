@@ -157,6 +157,10 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);
     if (!given || !type) return;
     if (type->kind == Kind::handle && given->is_object()) {
+        if (parameter.space == Space::reference) {
+            take_place_of_object(c, value);
+            return check_given(c, argument, parameter, *value->type);
+        }
         if (coerce(c, value, *type)) return;
     }
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;
@@ -406,7 +410,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         if (of->kind == Kind::block || of->kind == Kind::interface) {
             if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
                 Routine& method = overload_of(c, *e, of->routine->overloads, *first);
-                if (!is_accessible(c, method.pou->access, *method.owner, callee.token))
+                if (!method.pou->follows_init &&
+                    !is_accessible(c, method.pou->access, *method.owner, callee.token))
                     return nullptr;
                 return check_method_call(c, e, method, *callee.operands[0], as_statement);
             }

@@ -106,6 +106,13 @@ struct Checking {
     std::map<std::pair<const Pou*, std::string_view>, Variable*> by_capitals = {};
     /// Names of global variables that stand in several lists, the first two of them.
     NameMap<std::pair<Token, Token>> in_several_lists = {};
+    /// `VAR_GLOBAL Axis_1 : AXIS_REF`, and which global it is.
+    struct ListedAxis {
+        std::string_view list, name;
+        int global = -1;
+    };
+    NameMap<ListedAxis> listed_axes = {};                       ///< the first of each name
+    std::unordered_map<int, Variable*> places_of_objects = {};  ///< by the number of the global
     NameMap<GlobalConstant> constants = {};  ///< by name; of a block as `Block.constant`
     std::deque<DeclarationBlock> constants_of_blocks = {};  ///< as lists of globals of their names
     std::unordered_set<const Declaration*> begun_constants = {};  ///< declared, or being so

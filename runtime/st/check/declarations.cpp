@@ -113,6 +113,21 @@ const Variable* in_another_list(Checking& c, const DeclarationBlock& block, cons
     return is_of_list && known->name.place.source != name.place.source ? known : nullptr;
 }
 
+/// Axes of one name in several lists are several: each is called by its list and its name.
+void declare_axis(Checking& c, const DeclarationBlock& block, Variable& axis) {
+    const auto name_by_list = [&](Checking::ListedAxis& listed) {
+        const std::string_view list = listed.list.substr(listed.list.rfind('.') + 1);
+        std::string& name = c.checked.globals[static_cast<std::size_t>(listed.global)].name;
+        if (!list.empty()) name = fmt::format("{}_{}", list, listed.name);
+    };
+    declare_object(c, axis);
+    Checking::ListedAxis own{block.list, axis.name.text, axis.global};
+    const auto [first, is_first] = c.listed_axes.emplace(axis.name.text, own);
+    if (is_first || first->second.list == block.list) return;
+    name_by_list(first->second);
+    name_by_list(own);
+}
+
 Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
     if (!is_library(declared.name)) global_variables(c);
     const Type* type = resolve(c, *declared.type);
@@ -126,7 +141,10 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
         return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     c.globals.emplace(in_list, variable);
-    if (type && type->kind == Kind::handle) return declare_object(c, *variable);
+    if (type && type->kind == Kind::handle) {
+        declare_axis(c, block, *variable);
+        return variable;
+    }
     variable->text = name.text;
     variable->constant = block.constant;
     variable->retain = block.retain;
@@ -266,6 +284,14 @@ void begin_anew(Checking& c, Routine& routine, Variable& variable) {
     routine.call_begins.push_back(make_assignment(c, like.place, use_of(variable), use_of(fresh)));
 }
 
+/// A block keeps which axis it was given last. Of a call the variable itself is meant, which a
+/// pointer to it outlives.
+bool is_copied(const Routine& routine, const Type* type) {
+    const Source& source = *routine.pou->name.place.source;
+    const bool has_pointers = &source.dialect != &scl && !source.is_prelude();
+    return type && type->is_handle() && (routine.has_instances() || !has_pointers);
+}
+
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : block.declarations) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input ||
@@ -287,7 +313,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         variable->retain = block.retain;
         variable->of = routine.pou;
         variable->access = block.access;
-        if (section == Section::in_out && !(type && type->is_handle()))
+        if (section == Section::in_out && !is_copied(routine, type))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
         const bool is_of_base = !added && it->second->of != routine.pou;

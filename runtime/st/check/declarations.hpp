@@ -55,6 +55,9 @@ bool is_constructed(const Type* type);
 /// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
 
+/// Calls what stands behind `{attribute 'call_after_init'}` of these instances.
+void follow_init(Checking& c, Variable& variable);
+
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type);
 
 /// Calls FB_init of what is made in a run, at `part`, with `values`.
@@ -73,6 +76,12 @@ void bring_up_to_date(Checking& c, Routine& routine);
 
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);
+
+// axes_of_tests.cpp
+
+/// Each AXIS_REF that a TEST, what it tests or a global keeps has a block of the program, which the
+/// TEST begins with giving it.
+void give_axes_to_tests(Checking& c);
 
 // order.cpp
 

@@ -202,6 +202,7 @@ void check_initial_values(Checking& c) {
     for (Variable& variable : c.checked.variables) {
         check_one(variable);
         begin_instance(c, variable);
+        follow_init(c, variable);
     }
     for (const Global& global : c.checked.globals) check_data_block(c, global);
     for (Routine& routine : c.checked.routines) {
@@ -214,9 +215,11 @@ void check_initial_values(Checking& c) {
                        "leave ':= ...' out; the caller gives the variable");
             begin_instance(c, variable);
             check_one(variable);
+            follow_init(c, variable);
         }
     }
     c.routine = nullptr;
+    give_axes_to_tests(c);
     begin_globals(c);
 }
 

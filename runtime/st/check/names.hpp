@@ -59,6 +59,10 @@ const Type* object_type(Checking& c, const Type& handle);
 /// `VAR_GLOBAL Axis_1 : AXIS_REF`: the program has the block.
 Variable* declare_object(Checking& c, Variable& variable);
 
+/// `e`, a block of the program, becomes a variable that refers to it, which pointers and references
+/// are to; anything else stays.
+void take_place_of_object(Checking& c, Expression*& e);
+
 /// What a test has of a kind that others refer to, such as an axis, is a block of its own.
 void make_object(Checking& c, Variable& variable);
 

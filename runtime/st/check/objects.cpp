@@ -1,4 +1,5 @@
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
@@ -28,6 +29,26 @@ void make_object(Checking& c, Variable& variable) {
     variable.space = Space::global;
     variable.global = static_cast<int>(c.checked.globals.size());
     c.checked.globals.push_back({std::string(variable.text), &own});
+}
+
+void take_place_of_object(Checking& c, Expression*& e) {
+    const bool is_object = e->type && e->type->is_object() && e->kind == E::name && e->variable &&
+                           e->variable->global >= 0;
+    const Type* handle = is_object ? standard_type(c, e->type->standard->handle) : nullptr;
+    if (!handle) return;
+    const int global = e->variable->global;
+    Variable*& place = c.places_of_objects[global];
+    if (!place) {
+        place = &c.checked.variables.emplace_back();
+        place->name = e->token;
+        place->text = c.checked.names.emplace_back(
+            fmt::format("\"{}\"", c.checked.globals[static_cast<std::size_t>(global)].name));
+        place->type = handle;
+        place->named = global;
+        place->used = true;
+        keep_once(c, *place);
+    }
+    e = make_use(c, *e, *place);
 }
 
 Variable* declare_program(Checking& c, const Token& name) {

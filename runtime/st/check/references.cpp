@@ -1,5 +1,6 @@
 #include "runtime/st/check/references.hpp"
 
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
@@ -126,6 +127,7 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
 /// A REFERENCE TO is given a variable, or another reference.
 bool bind(Checking& c, Expression*& e, const Type& to) {
     if (is_null(*e)) return become(c, e, to, {});
+    if (to.element && to.element->kind == Kind::handle) take_place_of_object(c, e);
     const Type& from = *e->type;
     const bool sees_bytes = from.is_pointer() && from.element && to.element &&
                             is_of_bytes(*from.element) && packed_bits(*to.element, iec) > 0;
@@ -180,8 +182,10 @@ const Type* check_size(Checking& c, Expression*& e) {
 
 const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
     Expression* place = e->arguments[0].value;
-    const Type* type = check(c, place);
-    if (!type || !refer(c, place, make_reference(c, referring, type))) return nullptr;
+    if (!check(c, place)) return nullptr;
+    take_place_of_object(c, place);
+    const Type* type = place->type;
+    if (!refer(c, place, make_reference(c, referring, type))) return nullptr;
     e = place;
     return e->type;
 }

@@ -306,6 +306,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         auto& own = const_cast<Type&>(*type);
         own.name = std::string(name_with_namespace(c, declared.name).text);
         own.is_unnamed = false;
+        own.texts_are_names = declared.texts_are_names && own.has_values();
     }
     if (declared.initial) {
         Type& copy = c.checked.types.emplace_back(*type);

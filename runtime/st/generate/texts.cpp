@@ -10,9 +10,34 @@ namespace {
 
 constexpr std::uint32_t result_slots = 1 + (longest_result + 7) / 8;
 
+Slot constant_text(Writing& w, std::string_view text) {
+    const auto first = static_cast<std::uint32_t>(w.constants.size());
+    std::vector<std::uint64_t> words(1 + (text.size() + 7) / 8);
+    words[0] = text.size();
+    std::ranges::copy(text, reinterpret_cast<char*>(words.data() + 1));
+    w.constants.insert(w.constants.end(), words.begin(), words.end());
+    return w.emit(Op::set_address, none, Region::constant + first);
+}
+
+/// The name of the value goes to the text, which stays where the number is that of none.
+void write_name(Writing& w, const Type& type, Slot number, Slot text) {
+    Jumps end;
+    for (std::size_t i = 0; i < type.values.size(); ++i) {
+        Jumps next;
+        const Slot kept = w.constant_slot(static_cast<std::uint64_t>(type.kept(i)));
+        w.jump(Op::jump_unless, 0, w.emit(Op::eq_word, none, number, kept), next);
+        w.put(Op::text_copy, text, constant_text(w, type.values[i]),
+              w.constant_slot(type.values[i].size()));
+        w.jump(Op::jump, 0, 0, end);
+        w.land(next);
+    }
+    w.land(end);
+}
+
 Slot text_conversion(Writing& w, const Expression& e) {
     const Expression& from = *e.operands[0];
     Slot number = value(w, from);
+    const Slot kept = number;
     if (from.type->kind == Type::Kind::enumeration)
         number = convert(w, number, *from.type, lint_type, false, none);
     const auto [text, made] = new_text(w);
@@ -31,6 +56,7 @@ Slot text_conversion(Writing& w, const Expression& e) {
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
     w.put(op, made, number, e.conversion.has_sign ? 1 : 0);
+    if (from.type->texts_are_names) write_name(w, *from.type, kept, made);
     return made;
 }
 
@@ -53,15 +79,7 @@ Slot text_before(Writing& w, const Expression& e, const Expression& later) {
 }
 
 Slot text_address(Writing& w, const Expression& e) {
-    if (e.kind == E::constant) {
-        const auto first = static_cast<std::uint32_t>(w.constants.size());
-        const std::string& text = e.constant.text;
-        std::vector<std::uint64_t> words(1 + (text.size() + 7) / 8);
-        words[0] = text.size();
-        std::ranges::copy(text, reinterpret_cast<char*>(words.data() + 1));
-        w.constants.insert(w.constants.end(), words.begin(), words.end());
-        return w.emit(Op::set_address, none, Region::constant + first);
-    }
+    if (e.kind == E::constant) return constant_text(w, e.constant.text);
     if (e.kind == E::call && e.routine) return w.emit(Op::set_address, none, call(w, e, none));
     if (e.kind == E::call) return standard(w, e, none);
     if (e.kind == E::converted) return text_conversion(w, e);

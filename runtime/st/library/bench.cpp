@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/st/library/fields.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
@@ -32,21 +31,15 @@ std::string written(const Assertion& failed, Place at) {
 
 }  // namespace
 
-Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Told told)
+Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Told told,
+             std::span<const KeptReference> kept)
     : made_(made),
       options_(options),
       told_(std::move(told)),
       memory_(made.generated.images.at(&unit)) {
     for (const Assertion& assertion : made.generated.assertions)
         assertions_.emplace(assertion.instruction, &assertion);
-    std::vector<std::size_t> begins;
-    for (const Global& global : made.checked.globals) {
-        const bool is_unit = is_program(global) && global.type == &unit;
-        begins.push_back(is_unit ? 0 : 8 * memory_.size());
-        if (is_unit) continue;
-        const auto& image = made.generated.images.at(global.type);
-        memory_.insert(memory_.end(), image.begin(), image.end());
-    }
+    const std::vector<std::size_t> begins = lay_out(unit, kept);
     unit_ = reinterpret_cast<std::byte*>(memory_.data());
     for (const std::size_t begin : begins) places_.push_back(unit_ + begin);
     context_ = {.instances = places_.data(),
@@ -54,9 +47,40 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
                 .memory = unit_,
                 .task = 0,
                 .published = &never};
-    for (std::size_t i = 0; i < places_.size(); ++i)
+    const std::size_t globals = made.checked.globals.size();
+    for (std::size_t i = 0; i < globals; ++i)
         if (const Variable* object = made.checked.globals[i].object)
             objects_.emplace_back(object->type->standard, places_[i]);
+    for (const Variable& variable : made.checked.variables)
+        if (const std::int64_t named = variable.named; named >= 0)
+            std::memcpy(
+                global(static_cast<std::size_t>(variable.global)) + 8 * std::size_t{variable.slot},
+                &named, sizeof named);
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        const std::int64_t number = std::ssize(made.checked.globals) + static_cast<int>(i);
+        std::byte* const owner =
+            kept[i].global < 0 ? unit_ : global(static_cast<std::size_t>(kept[i].global));
+        std::memcpy(owner + kept[i].offset, &number, sizeof number);
+        kept[i].to->construct(places_[globals + i]);
+        objects_.emplace_back(kept[i].to, places_[globals + i]);
+    }
+}
+
+/// Where each global and each block of `kept` begins.
+std::vector<std::size_t> Bench::lay_out(const Type& unit, std::span<const KeptReference> kept) {
+    std::vector<std::size_t> begins;
+    for (const Global& global : made_.checked.globals) {
+        const bool is_unit = is_program(global) && global.type == &unit;
+        begins.push_back(is_unit ? 0 : 8 * memory_.size());
+        if (is_unit) continue;
+        const auto& image = made_.generated.images.at(global.type);
+        memory_.insert(memory_.end(), image.begin(), image.end());
+    }
+    for (const KeptReference& reference : kept) {
+        begins.push_back(8 * memory_.size());
+        memory_.resize(memory_.size() + (reference.to->size + 7) / 8);
+    }
+    return begins;
 }
 
 Bench::Bench(const Compiled& made, const Options& options, std::byte* unit, const Context& context,
@@ -69,7 +93,7 @@ Bench::Bench(const Compiled& made, const Options& options, std::byte* unit, cons
 TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
     const Code& code = made_.generated.code;
     root_ = instance;
-    for (std::uint64_t i = 0; i < places_.size(); ++i)
+    for (std::uint64_t i = 0; i < made_.checked.globals.size() && !places_.empty(); ++i)
         std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
     code.witness = this;
     const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel);

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "runtime/st/library/compiled.hpp"
+#include "runtime/st/library/fields.hpp"
 #include "runtime/st/library/test_suite.hpp"
 
 namespace lineshaft::st {
@@ -21,7 +21,9 @@ class Bench : Witness {
     /// What an assertion says that does not hold; true: what runs ends with it.
     using Told = std::function<bool(TestResult)>;
 
-    Bench(const Compiled& made, const Options& options, const Type& unit, Told told);
+    /// Each of `kept` has a block of its own beside the unit.
+    Bench(const Compiled& made, const Options& options, const Type& unit, Told told,
+          std::span<const KeptReference> kept = {});
     /// On the memory of a machine that runs a scan of the unit, whose time this is.
     Bench(const Compiled& made, const Options& options, std::byte* unit, const Context& context,
           Told told);
@@ -40,6 +42,7 @@ class Bench : Witness {
     std::optional<Mark> cut();
 
   private:
+    std::vector<std::size_t> lay_out(const Type& unit, std::span<const KeptReference> kept);
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
     const std::byte* place(std::uint64_t address);
     std::string_view text_at(std::uint64_t address);
@@ -54,7 +57,7 @@ class Bench : Witness {
     const Options& options_;
     Told told_;
     std::unordered_map<std::uint64_t, const Assertion*> assertions_;  ///< by their instruction
-    std::vector<std::uint64_t> memory_;  ///< of the unit, then the data blocks and objects
+    std::vector<std::uint64_t> memory_;  ///< of the unit, the data blocks and objects, what is kept
     std::vector<std::byte*> places_;
     std::byte* unit_ = nullptr;
     Context context_;

@@ -127,7 +127,7 @@ class FieldWriter {
                     kind_.texts.push_back(made_.names.emplace_back(name));
                 return;
             case Kind::handle:
-                write_handle(type, offset, name, direction);
+                write_handle(type, offset, name, direction, variable);
                 return;
             default:
                 write_scalar(type, offset, name, direction, variable);
@@ -164,11 +164,13 @@ class FieldWriter {
     /// `VAR axis : AXIS_REF` may be given one of the program's, as TwinCAT links it to one of its
     /// numerical control. What a caller gives to a part is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
-                      Direction direction) {
+                      Direction direction, const Variable& variable) {
         const bool is_given = direction == Direction::in_out || direction == Direction::input;
         if (!is_given && !is_own_) return;
         Field& field = add(name, Direction::in_out, lineshaft::Type::integer, offset);
         field.refers = type.standard->name;
+        if (variable.named >= 0)
+            field.global = made_.checked.globals[static_cast<std::size_t>(variable.named)].name;
         field.doc = type.standard->doc;
         field.required = is_given;
     }
@@ -289,6 +291,28 @@ void add_data_blocks(Library::Made& made, const Options& options) {
         kind.doc = global.pou ? "DATA_BLOCK" : global.name == "statics" ? "VAR_STAT" : "VAR_GLOBAL";
         write_fields(made, kind, global);
     }
+}
+
+std::vector<KeptReference> kept_references(Library::Made& made, const Routine& program,
+                                           const Catalog& standard) {
+    std::vector<KeptReference> kept;
+    const auto note = [&](const KindContext& kind, int global) {
+        for (const Field& field : kind.fields)
+            if (!field.refers.empty() && field.global.empty() && !field.required)
+                kept.push_back({global, field.offset, standard.find(field.refers)});
+    };
+    KindContext& own = add_kind(made, program.name, *program.type, {});
+    write_fields(made, own, program);
+    note(own, -1);
+    for (std::size_t i = 0; i < made.checked.globals.size(); ++i) {
+        const Global& global = made.checked.globals[i];
+        const bool is_own = is_program(global) && global.type == program.type;
+        if (global.object || is_own || global.name == image_name) continue;
+        KindContext& kind = add_kind(made, global.name, *global.type, {});
+        write_fields(made, kind, global);
+        note(kind, static_cast<int>(i));
+    }
+    return kept;
 }
 
 void write_fields(Library::Made& made, KindContext& kind, const Global& global) {

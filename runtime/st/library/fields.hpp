@@ -21,6 +21,17 @@ void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fi
 /// A kind of each data block and `VAR_GLOBAL`, and of a PROGRAM that is named and has none yet.
 void add_data_blocks(Library::Made& made, const Options& options);
 
+/// An AXIS_REF or another reference to a block of the program that nobody gives.
+struct KeptReference {
+    int global = -1;  ///< whose it is; -1: the PROGRAM's
+    std::size_t offset = 0;
+    const BlockType* to = nullptr;
+};
+
+/// All that a PROGRAM and the globals keep for themselves, in their blocks, structures and arrays.
+std::vector<KeptReference> kept_references(Library::Made& made, const Routine& program,
+                                           const Catalog& standard);
+
 /// What comments say, in one line.
 std::string text_of_comments(std::string_view written);
 

@@ -47,16 +47,42 @@ const Variable* find(std::span<Variable* const> variables, std::string_view name
     return found ? *found : nullptr;
 }
 
+/// An AXIS_REF of a call, which has no axis: nobody could give it one.
+const Variable* reference_of_call(const Routine& routine) {
+    for (const Variable& variable : routine.variables) {
+        const bool is_given =
+            variable.section == Section::input || variable.section == Section::in_out;
+        const bool is_kept = routine.has_instances() && variable.section != Section::temp;
+        if (variable.type && variable.type->is_handle() && !is_given && !is_kept) return &variable;
+    }
+    return nullptr;
+}
+
+/// Empty where the suite and its methods have none.
+std::string reference_without_block(const Routine& suite) {
+    for (const Routine* block = &suite; block; block = block->base) {
+        std::vector<const Routine*> routines{block};
+        routines.insert(routines.end(), block->own_methods.begin(), block->own_methods.end());
+        for (const Routine* routine : routines)
+            if (const Variable* found = reference_of_call(*routine))
+                return fmt::format(
+                    "; '{}' in line {} has no axis, as it is of a call: declare it in VAR of '{}'",
+                    found->text, found->name.place.mark().line, block->name);
+    }
+    return {};
+}
+
 /// A run of all suites.
 class Suites {
   public:
     Suites(const Compiled& made, const Options& options, const Routine& program,
-           const SuitesWatch& watch)
+           std::span<const KeptReference> kept, const SuitesWatch& watch)
         : made_(made),
           program_(program),
           watch_(watch),
-          bench_(made, options, *program.type,
-                 [this](TestResult result) { return tell(std::move(result)); }) {
+          bench_(
+              made, options, *program.type,
+              [this](TestResult result) { return tell(std::move(result)); }, kept) {
         add_suites(program.name, *program.type, -1, 0);
         for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
             for (const Variable* member : made.checked.globals[i].type->members)
@@ -150,7 +176,9 @@ class Suites {
                 (suite.global < 0 ? bench_.unit()
                                   : bench_.global(static_cast<std::size_t>(suite.global))) +
                 8 * suite.slot;
-            const TestResult result = bench_.run(code_of(*suite.block), instance);
+            TestResult result = bench_.run(code_of(*suite.block), instance);
+            if (result.failure.starts_with("the fault no_reference"))
+                result.failure += reference_without_block(*suite.block);
             if (!result.failure.empty()) note_fault(i, result);
             suite.is_done = !result.failure.empty() || open_tests(i).empty();
             if (in_sequence && !suite.is_done) return;
@@ -209,7 +237,8 @@ class Suites {
             if (const auto it = failed_.find(i); it != failed_.end())
                 made.result = it->second;
             else if (!test.finished && !test.skipped)
-                made.result = {"it is not finished after ten minutes: TEST_FINISHED is missing",
+                made.result = {"it is not finished after ten minutes: TEST_FINISHED is missing" +
+                                   reference_without_block(*suite.block),
                                made.test.mark};
         }
         for (const auto& [suite, result] : faults_)
@@ -256,7 +285,7 @@ std::optional<std::vector<SuiteTest>> run_suites(
     constexpr std::int64_t more_fuel = 100;  // a test may do in a scan what a machine does in many
     Options own = options;
     own.fuel *= more_fuel;
-    Compiled made;
+    Library::Made made;
     made.sources = sources;
     made.sources.push_back(file);
     if (!compile(made, standard, out)) return {};
@@ -274,7 +303,8 @@ std::optional<std::vector<SuiteTest>> run_suites(
                 "declare an instance of a block that extends TcUnit.FB_TestSuite");
         return {};
     }
-    return Suites(made, own, *program, watch).run(cycle);
+    const auto kept = kept_references(made, *program, standard);
+    return Suites(made, own, *program, kept, watch).run(cycle);
 }
 
 }  // namespace lineshaft::st

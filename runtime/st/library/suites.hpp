@@ -24,7 +24,8 @@ struct SuitesWatch {
 
 /// Scans the PROGRAM of `file` every `cycle` [ns], and behind it the suites of TcUnit that it and
 /// the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
-/// other blocks of the lists are scanned every millisecond. A failed assertion does not end its
+/// other blocks of the lists are scanned every millisecond, as is one for each AXIS_REF that the
+/// program, its blocks or a list keep. A failed assertion does not end its
 /// test; the first one is told. A test that is not finished after ten minutes has failed, as has
 /// one in which a fault happens, and then the others of its suite that are not finished. Empty,
 /// with all that is wrong in `out`, if anything is.

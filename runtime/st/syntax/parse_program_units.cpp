@@ -204,6 +204,7 @@ Pou* parse_pou(Parsing& p) {
     pou.kind = words.kind;
     pou.doc = doc;
     pou.is_class = opener.word == Word::class_;
+    pou.follows_init = opener.word == Word::method_ && has_attribute(p, first, "call_after_init");
     parse_pou_modifiers(p, pou);
     const bool is_operator = has_no_bodies(p) && !p.is_name();  // B&R declares AND and its like
     pou.name = is_operator ? p.take()

@@ -1,4 +1,5 @@
 #include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {
 
@@ -141,11 +142,14 @@ void parse_reference(Parsing& p, TypeText& type) {
 /// Type_Decl : Name ( 'EXTENDS' Qualified_Name ) ? Attribute *
 ///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
+    bool texts_are_names = has_attribute(p, p.at, "to_string");
     const Token opener = p.take();
     const auto is_abstract = [&] { return p.is_name(1) || p.next().word == Word::end_type_; };
     while (accept_access(p) || (is_abstract() && p.accept(Word::abstract_))) continue;
     while (!is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou()) {
         TypeDeclaration declared;
+        declared.texts_are_names = has_attribute(p, p.at, "to_string") || texts_are_names;
+        texts_are_names = false;
         declared.name = expect_name(p, "the name of a type");
         Token base;
         if (p.accept(Word::extends_)) base = parse_qualified_name(p, "a structure");

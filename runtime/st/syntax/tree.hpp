@@ -268,6 +268,7 @@ struct Pou {
     Accessor accessor = Accessor::none;   ///< of a method
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
+    bool follows_init = false;            ///< a method that is called once behind FB_init
     bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;    ///< not understood
     bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
@@ -281,7 +282,8 @@ struct TypeDeclaration {
     Token name = {};
     TypeText* type = nullptr;
     Expression* initial = nullptr;
-    bool is_lost = false;  ///< not understood
+    bool is_lost = false;          ///< not understood
+    bool texts_are_names = false;  ///< `{attribute 'to_string'}`
 };
 
 /// Part of a source where names may be written without the namespace that they are in: a namespace,

@@ -73,6 +73,7 @@ struct Type {
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
+    bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
@@ -156,6 +157,7 @@ struct Variable {
     std::uint32_t byte = 0;  ///< of a boolean of a kind of the catalogue, in its memory
     bool is_byte = false;
     int global = -1;
+    int named = -1;  ///< an AXIS_REF that is to this global, a block of the program, all the time
     ImageAddress address = {};     ///< in the process image
     bool is_direct = false;        ///< no variable: an address that code names
     Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
