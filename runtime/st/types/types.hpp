@@ -75,6 +75,7 @@ struct Type {
     bool counted = true;                       ///< those are 0, 1, 2, ...
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
+    bool all_others_as_last = false;           ///< of them: beyond is as the last one
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
     Routine* routine = nullptr;  ///< of a block, of an interface
     const BlockType* standard = nullptr;
