@@ -79,7 +79,8 @@ constexpr std::int64_t directions[] = {0, 1, 2, 0},
                        homing_modes[] = {0, 3, 4, 4, 4, 4, 3, 0, 4, 4, 4, 0, 3, 4};
 
 constexpr Beginning beginnings[] = {{"mc_moveabsolute", "Direction", 1},
-                                    {"mc_movevelocity", "Velocity", 100}};
+                                    {"mc_movevelocity", "Velocity", 100},
+                                    {"f_trig", "last", 1}};
 
 /// Empty: it is none of theirs.
 std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
