@@ -24,6 +24,12 @@ void prefetch(const Axis* axis) {
     ask_for(phase, phase + 1);
 }
 
+/// A field of the request at work.
+Field of_active(Field of_running) {
+    of_running.offset += detail::offset_of(&Axis::active);
+    return of_running;
+}
+
 }  // namespace
 
 template <>
@@ -86,6 +92,8 @@ std::span<const Field> Axis::fields() {
         output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
         local("homed", &A::homed, "", "by MC_Home"),
+        of_active(local("jogs", &A::Running::request, &Request::jogs, "",
+                        "1: what moves it is MC_MoveJog")),
         local("velocity_factor", &A::factors, &A::Factors::velocity, "", "of MC_SetOverride"),
         local("acceleration_factor", &A::factors, &A::Factors::acceleration, "", "likewise"),
         local("jerk_factor", &A::factors, &A::Factors::jerk, "", "likewise"),

@@ -464,7 +464,9 @@ double Axis::nearest_to(double place, double shown_there) const {
 /// The position is known at once, at the end of the move, or where the signal came: from there the
 /// axis stops.
 MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& from) {
-    if (modulo && (request.position < 0 || request.position >= period))
+    const bool is_relative = request.homing == HomingMode::relative;
+    const bool is_outside = modulo && (request.position < 0 || request.position >= period);
+    if (request.homing == HomingMode::other || (is_outside && !is_relative))
         return MotionError::out_of_range;
     if (request.homing == HomingMode::to_position)
         return plan_point(request, target_of(request, from), at, from);
@@ -474,10 +476,10 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
     search.velocity = asked_of(request).velocity;
     if (request.homing == HomingMode::on_signal) return plan_velocity(search, at, from);
     Start known = from;
-    known.state.position = request.position;
+    known.state.position = request.position + (is_relative ? from.state.position : 0);
     const MotionError why = plan_velocity(search, at, known);
     if (why != MotionError::none) return why;
-    relocated += request.position - from.state.position;
+    relocated += known.state.position - from.state.position;
     ++renamed;
     from = known;
     return why;

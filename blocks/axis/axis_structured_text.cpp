@@ -30,7 +30,8 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X6 := axis.state = standstill;
     word.%X7 := axis.velocity = 0;
     word.%X8 := axis.state = discrete_motion;
-    word.%X10 := axis.state = continuous_motion;
+    word.%X9 := axis.state = continuous_motion AND axis.jogs = 1;
+    word.%X10 := axis.state = continuous_motion AND axis.jogs = 0;
     word.%X11 := axis.state = homing;
     word.%X12 := axis.acceleration = 0;
     word.%X13 := power > 0 OR axis.velocity = 0 AND axis.acceleration <> 0;
@@ -98,6 +99,7 @@ END_VAR
 VAR_OUTPUT InVelocity, Busy, CommandAborted, Error : BOOL; ErrorId : WORD; END_VAR
 VAR move : MC_MoveVelocity; halt : MC_Halt; jogs, jogged : BOOL; END_VAR
     jogs := JogForward XOR JogBackward;
+    move.Jogs := 1;
     move(Axis := Axis, Execute := jogs, ContinuousUpdate := TRUE,
          Velocity := SEL(JogForward, -ABS(Velocity), ABS(Velocity)),
          Acceleration := Acceleration, Deceleration := Deceleration, Jerk := Jerk);

@@ -153,8 +153,9 @@ constexpr std::string_view text_of(MotionError error) {
 /// The same, of sync_limits with the limit and by how much it is short, in the unit of the axis.
 std::string text_of(MotionError error, const Shortage& shortage, std::string_view unit);
 
-/// Of MC_Home. `signalled`: it was `on_signal`, and the signal has come.
-enum class HomingMode : std::int64_t { direct, to_position, on_signal, signalled };
+/// Of MC_Home. `other`: there is no such mode. `signalled`: it was `on_signal`, and the signal has
+/// come.
+enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
 /// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
 struct Request {
@@ -168,6 +169,7 @@ struct Request {
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
     std::int64_t holds = 0;      ///< Execute of MC_Stop, Enable of MC_MotionInPosition
     std::int64_t relative = 0;   ///< of MC_SetPosition
+    std::int64_t jogs = 0;       ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t parameter = 0;  ///< number, of MC_WriteParameter and MC_WriteBoolParameter
     HomingMode homing = HomingMode::direct;
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride

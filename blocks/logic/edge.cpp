@@ -10,6 +10,7 @@ std::span<const Field> Edge<falling>::fields() {
     static const Field table[] = {
         input("clk", &E::clk, "", "signal to watch").must_be_set(),
         output("q", &E::q, "", falling ? "clk has fallen" : "clk has risen"),
+        local("last", &E::last, "", falling ? "clk was false" : "clk was true"),
     };
     return table;
 }

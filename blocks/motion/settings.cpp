@@ -6,7 +6,8 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcOnSignal"};
+constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcOnSignal",
+                                                "mcRelative", "mcOther"};
 
 }  // namespace
 

@@ -51,8 +51,9 @@ struct SetOverride : CommandBlock {
 
 /// MC_Home (3.2). `mcDirect`: the position is Position at once. `mcToPosition`: the axis moves to
 /// Position. `mcOnSignal`: it moves in Direction until Signal rises; there Position is, and it
-/// stops. A Signal that is true from the beginning must fall first. A buffered one waits for what
-/// is at work, as far as that leaves the axis standing, and ends what is superimposed.
+/// stops. A Signal that is true from the beginning must fall first. `mcRelative`: Position is added
+/// at once. `mcOther` stands for modes of other controllers, and is refused. A buffered one waits
+/// for what is at work, as far as that leaves the axis standing, and ends what is superimposed.
 struct Home : CommandBlock {
     HomingMode mode = HomingMode::direct;
     bool signal = false, last_signal = false, signalled = false;

@@ -63,7 +63,8 @@ void statement(Running& r, const S7Instruction::Pin* target, std::string_view fu
 /// Whose OUT is no result but something that it writes to.
 bool writes_to_out(std::string_view name) {
     static constexpr std::string_view all[] = {"move_blk", "umove_blk", "fill_blk", "ufill_blk",
-                                               "scatter",  "gather",    "rd_sys_t", "rd_loc_t"};
+                                               "scatter",  "gather",    "rd_sys_t", "rd_loc_t",
+                                               "strg_val", "val_strg"};
     return std::ranges::any_of(all, st::is_called(name));
 }
 

@@ -6,6 +6,7 @@
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -140,7 +141,9 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
     const bool is_output = parameter.section == Section::output;
-    const bool fits_sign = argument.is_output ? parameter.can_be_taken() : !is_output || is_set;
+    const bool is_written_to = parameter.section == Section::in_out && is_prelude(parameter.name);
+    const bool fits_sign =
+        argument.is_output ? parameter.can_be_taken() || is_written_to : !is_output || is_set;
     if (argument.is_named() && !fits_sign) {
         check(c, value);
         c.fail(code::wrong_arguments, argument.name.place,
@@ -428,7 +431,9 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             }
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
-            if (!take_query(c, e, *routine) || !take_memory(c, e, *routine)) return nullptr;
+            if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
+                !take_bytes(c, e, *routine))
+                return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);
         }

@@ -17,8 +17,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
 // overloads.cpp
 
 /// Which of the functions or methods that share the name of `first` a call means: the one whose
-/// arguments are of the types that are given, or need the least conversion. Where none fits it is
-/// the first, whose call is refused then.
+/// arguments, also those that go out, are of the types that are given, or need the least
+/// conversion. Where none fits it is the first, whose call is refused then.
 Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
                      Routine& first);
 

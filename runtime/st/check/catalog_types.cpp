@@ -61,7 +61,8 @@ const Type& make_enumeration(Checking& c, const BlockType& kind, const Field& fi
     values.slots = 1;
     values.base = &lint_type;
     const auto meanings = meanings_of_numbers(field.name);
-    values.of_number.assign(meanings.begin(), meanings.end());
+    values.of_number.assign(meanings.places.begin(), meanings.places.end());
+    values.all_others_as_last = meanings.all_others_as_last;
     values.is_code = find_called(code_names, field.name) != nullptr;
     for (const std::string_view value : field.names) {
         values.numbers.push_back(static_cast<std::int64_t>(values.values.size()));
@@ -83,9 +84,11 @@ const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
 
 }  // namespace
 
-const Type* standard_type(Checking& c, std::string_view name) {
-    if (const Type* known = find_in(c.catalog_types, name)) return known;
+const Type* standard_type(Checking& c, std::string_view name, bool in_scl) {
     const std::string_view wanted = standard_type_name(name);
+    const Beginning* beginning = in_scl ? find_beginning(wanted) : nullptr;
+    auto& known = beginning ? c.catalog_types_of_scl : c.catalog_types;
+    if (const Type* type = find_in(known, name)) return type;
     if (const Type* handle = handle_type(c, wanted)) return handle;
     if (const Type* number = wanted == name ? nullptr : find_elementary(wanted)) return number;
     const NamedKind named = find_kind(c.catalog, wanted);
@@ -104,7 +107,11 @@ const Type* standard_type(Checking& c, std::string_view name) {
     }
     if (named.data_type)
         type.presets.push_back({named.data_type->name, {.integer = Wide(named.number)}});
-    return c.catalog_types[type.name] = &type;
+    if (beginning)
+        type.presets.push_back(
+            {beginning->part,
+             {.integer = beginning->value, .real = static_cast<double>(beginning->value)}});
+    return known[type.name] = &type;
 }
 
 }  // namespace lineshaft::st

@@ -91,7 +91,9 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     if (!is_constant(*e)) return convert(c, e, to);
     const Wide number = e->constant.integer;
     const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
-    const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)] : -1;
+    const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)]
+                               : to.all_others_as_last ? to.of_number.back()
+                                                       : -1;
     if (value < 0)
         return c.fail(
             code::value_out_of_range, e->place,

@@ -339,7 +339,9 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");
         const bool is_of_test = routine.pou->is_tests || routine.is_test();
-        if (variable->space == Space::frame && !is_of_test) refuse_object(c, *declared, type);
+        const bool is_array = type && type->kind == Kind::array;
+        if (variable->space == Space::frame && (!is_of_test || is_array))
+            refuse_object(c, *declared, type);
         if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
         const bool is_own =
             variable->space == Space::reference && routine.owner && type == routine.owner->type;
@@ -427,10 +429,13 @@ void declare_routine(Checking& c, Routine& routine) {
 }  // namespace
 
 void refuse_object(Checking& c, const Declaration& declared, const Type* type) {
+    const bool is_array = type && type->kind == Kind::array;
+    while (type && type->kind == Kind::array) type = type->element;
     if (!type || !type->is_object()) return;
     c.fail(code::wrong_place, declared.name.place,
            fmt::format("{} is a block of the program, and no part of another", type->name),
-           fmt::format("name it: {} : {};", declared.name.text, type->standard->handle));
+           is_array ? "declare a variable for each"
+                    : fmt::format("name it: {} : {};", declared.name.text, type->standard->handle));
 }
 
 void collect_names(Checking& c) {

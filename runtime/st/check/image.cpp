@@ -137,7 +137,8 @@ const Type* check_direct(Checking& c, Expression& e) {
     if (!address) return nullptr;
     Image& image = image_of(c);
     const auto is_there = [&](const Variable* variable) {
-        return variable->is_direct && variable->address == *address &&
+        return variable->is_direct && variable->type->is_scalar() &&
+               variable->address == *address &&
                &variable->name.place.dialect() == &e.place.dialect();
     };
     const auto it = std::ranges::find_if(image.variables, is_there);
@@ -151,6 +152,21 @@ const Type* check_direct(Checking& c, Expression& e) {
     put(c, variable, *address);
     e.variable = &variable;
     return variable.type;
+}
+
+Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
+    constexpr std::string_view names[areas] = {"%IB0..%IB1023", "%QB0..%QB1023", "%MB0..%MB1023"};
+    const std::string_view name = names[static_cast<std::size_t>(area)];
+    for (Variable* known : image_of(c).variables)
+        if (known->text == name && &known->name.place.dialect() == &at.place.dialect())
+            return *known;
+    Type& array = c.make_type(Kind::array, {});
+    array.upper = 1023;
+    array.element = &bits_type(8);
+    Variable& bytes = c.make_variable(at, name, &array);
+    bytes.is_direct = bytes.used = true;
+    put(c, bytes, {.area = area, .bits = 8});
+    return bytes;
 }
 
 void finish_image(Checking& c) {

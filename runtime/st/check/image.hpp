@@ -13,6 +13,15 @@ const Type* check_direct(Checking& c, Expression& e);
 /// How long each area is. Warns of variables of which none is a part of the other.
 void finish_image(Checking& c);
 
+/// The first 1024 bytes of an area, as an array that nobody can name.
+Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area);
+
+// peeks.cpp
+
+/// `PEEK(area := 16#81, dbNumber := 0, byteOffset := i)` takes the byte of the process image, and
+/// so do its like and POKE. False: there is none, which was told.
+bool take_bytes(Checking& c, Expression*& e, const Routine& called);
+
 // overlays.cpp
 
 /// `view AT other : T` of a routine, whose variables are declared: what each is a view of.

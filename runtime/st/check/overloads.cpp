@@ -1,3 +1,4 @@
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
 
@@ -32,30 +33,41 @@ std::optional<int> closeness(const Type& from, const Type& to) {
     return {};
 }
 
-std::vector<const Variable*> inputs_of(const Routine& routine) {
+std::vector<const Variable*> parameters_of(const Routine& routine) {
     std::vector<const Variable*> found;
     for (const Variable& variable : routine.variables)
         if (variable.is_parameter()) found.push_back(&variable);
     return found;
 }
 
+std::optional<int> closeness(const Variable& parameter, const Type& given) {
+    const bool goes_out = parameter.section == Section::output;
+    return goes_out ? closeness(*parameter.type, given) : closeness(given, *parameter.type);
+}
+
+bool is_of_no_parameter(const Argument& argument) {
+    return argument.is_output && same_name(argument.name.text, "eno");
+}
+
 std::optional<int> closeness(const Expression& call, const Routine& routine) {
-    const std::vector<const Variable*> inputs = inputs_of(routine);
+    const std::vector<const Variable*> parameters = parameters_of(routine);
     int sum = 0;
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
         const Argument& argument = call.arguments[i];
-        const Variable* input = i < inputs.size() ? inputs[i] : nullptr;
+        if (is_of_no_parameter(argument)) continue;
+        const Variable* parameter = i < parameters.size() ? parameters[i] : nullptr;
         if (argument.is_named()) {
-            const auto* named = find_called(inputs, argument.name.text, &Variable::text);
-            input = named ? *named : nullptr;
+            const auto* named = find_called(parameters, argument.name.text, &Variable::text);
+            parameter = named ? *named : nullptr;
         }
-        if (!input || !input->type) return {};
+        if (!parameter || !parameter->type) return {};
         if (!argument.value->type) continue;
-        const auto one = closeness(*argument.value->type, *input->type);
+        const auto one = closeness(*parameter, *argument.value->type);
         if (!one) return {};
         sum += *one;
     }
-    const auto missing = static_cast<int>(inputs.size()) - static_cast<int>(call.arguments.size());
+    const auto missing =
+        static_cast<int>(parameters.size()) - static_cast<int>(call.arguments.size());
     return sum - std::max(missing, 0);
 }
 
@@ -68,7 +80,7 @@ Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Ro
     });
     if (it == overloads.end()) return first;
     for (Argument& argument : call.arguments)
-        if (!argument.is_output) check(c, argument.value);
+        if (!is_of_no_parameter(argument)) check(c, argument.value);
     Routine* best = &first;
     std::optional<int> closest;
     for (Routine* routine : it->second) {

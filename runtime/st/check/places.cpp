@@ -231,8 +231,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     if (own) return true;
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
+    const bool is_block = of && (of->kind == Kind::block || is_prelude(target.token));
     const bool is_siemens_own =
-        of && of->kind == Kind::block && target.place.dialect().sets_variables_of_instances &&
+        is_block && target.place.dialect().sets_variables_of_instances &&
         (variable->section == Section::local || variable->section == Section::output);
     const bool is_public =
         variable->section == Section::local && variable->access == Access::public_;  // 6.6.5.10

@@ -289,6 +289,19 @@ const Type* check_capacity(Checking& c, Expression*& e) {
     return &int_type;
 }
 
+/// S_CONV is the conversion that has a name.
+const Type* check_wanted(Checking& c, Expression*& e, const Type* expected) {
+    const bool is_known = expected && (expected->kind == Kind::text ||
+                                       (expected->is_scalar() && !expected->is_any()));
+    if (!is_known)
+        return c.fail(code::type_does_not_fit, e->place,
+                      fmt::format("what {} is to give is not known", e->standard->name),
+                      "assign it to a variable, or write STRING_TO_INT(...)");
+    const bool is_text = expected->kind == Kind::text;
+    const std::string name = "TO_" + (is_text ? "STRING" : expected->plain().name);
+    return check_conversion(c, e, c.checked.names.emplace_back(name)).value_or(nullptr);
+}
+
 const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
     const StandardFunction& f = *call.standard;
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
@@ -341,6 +354,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
             return call.standard->result == Generic::long_integer     ? &lint_type
                    : call.standard->result == Generic::double_integer ? &dint_type
                                                                       : &time_type;
+        case Typing::wanted: return check_wanted(c, e, expected);
         case Typing::memory: return check_memory(c, call, expected);
         case Typing::operation: return check_operation(c, e, expected);
         case Typing::statement: break;

@@ -264,7 +264,8 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    if (const Type* type = standard_type(c, bare)) {
+    const bool in_scl = name.place.dialect().instances_begin_as_siemens;
+    if (const Type* type = standard_type(c, bare, in_scl)) {
         c.note(name.place, *type);
         return type;
     }

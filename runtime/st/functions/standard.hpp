@@ -30,6 +30,7 @@ enum class Typing : std::uint8_t {
     element_count,  ///< of an array: a constant
     scan_time,
     operation,  ///< those of the operator that the call is
+    wanted,     ///< of one argument: a conversion to what is wanted
     memory,     ///< of pointers and whole numbers
     statement,  ///< no value: a statement of its own, check/rewrites.cpp
 };

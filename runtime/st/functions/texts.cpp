@@ -108,6 +108,8 @@ constexpr StandardFunction texts[] = {
      Typing::texts, emit_insert},
     {"REPLACE(IN1, IN2: STRING; L, P: ANY_INT): STRING",
      "IN1 with IN2 in place of L characters from the one at P on", Typing::texts, emit_replace},
+    {"S_CONV(IN: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN as what is wanted, as STRING_TO_INT(IN) and INT_TO_STRING(IN) give it",
+     Typing::wanted, nullptr},
 };
 // clang-format on
 

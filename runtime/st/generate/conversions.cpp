@@ -155,6 +155,8 @@ Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to
         return convert(w, slot, *from.base, to, truncates, wanted);
     }
     if (to.kind == Kind::enumeration) {
+        if (to.all_others_as_last && from.is_integer())
+            slot = w.emit(Op::min_unsigned, none, slot, w.constant_slot(to.of_number.size() - 1));
         if (!to.of_number.empty() && from.is_integer()) slot = look_up(w, slot, to.of_number);
         if (to.has_numbers && !to.counted && from.is_integer())
             slot = look_up_place(w, slot, to.numbers);

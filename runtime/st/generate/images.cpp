@@ -36,6 +36,14 @@ void fill_elements(Writing& w, Writing::Image& image, std::uint32_t at, const Ty
     }
 }
 
+/// Of a block that begins at `at`.
+void put(Writing::Image& image, std::uint32_t at, const Variable& member, const Constant& value) {
+    if (member.is_byte)
+        reinterpret_cast<char*>(&image[at])[member.byte] = static_cast<char>(value.integer);
+    else
+        image[at + member.slot] = bits_of(*member.type, value);
+}
+
 /// What is 0 says nothing of the bytes that other members share.
 void fill_member_of_union(Writing& w, Writing::Image& image, std::uint32_t at,
                           const Variable& member, const Expression* value) {
@@ -79,8 +87,7 @@ void fill_default(Writing& w, Writing::Image& image, std::uint32_t at, const Typ
             type.standard->construct(reinterpret_cast<std::byte*>(&image[at]));
             for (const auto& [name, value] : type.presets)
                 for (const Variable* member : type.members)
-                    if (member->text == name)
-                        image[at + member->slot] = bits_of(*member->type, value);
+                    if (member->text == name) put(image, at, *member, value);
             break;
         default:
             if (type.is_scalar()) image[at] = bits_of(type, type.initial);

@@ -47,6 +47,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .numbers_stand_for_names = true,
                      .texts_of_integers_have_signs = true,
                      .packs_as_s7 = true,
+                     .instances_begin_as_siemens = true,
+                     .peripheries_are_image = true,
                      .dint_is_time = true};
 
 const Dialect& dialect_of(std::string_view path) {

@@ -28,9 +28,11 @@ struct Dialect {
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
-    bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
-    bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
-    bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
+    bool references_take_addresses = false;   ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
+    bool instances_begin_as_siemens = false;  ///< see find_beginning
+    bool peripheries_are_image = false;       ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
+    bool dint_is_time = false;                ///< a DINT is a TIME in ms, and the other way
+    bool texts_have_any_length = false;       ///< STRING[0], and a reference to it is one to any
     bool reckons_wide = false;    ///< whole numbers in 64 bits, until they are kept, as on x64
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
 };

@@ -403,6 +403,7 @@ class Lexer {
             token.quoted = !local;
             token.local = local;
             if (is_prefix) ++at_;
+            if (!is_prefix && !local) skip_periphery();
             return;
         }
         skip_name();
@@ -427,6 +428,13 @@ class Lexer {
         }
         if (!partial && peek() == '*') ++at_;
         add(Word::direct);
+        if (!partial) skip_periphery();
+    }
+
+    /// `:P` behind an address or a tag: what stands there now, which is what the image has.
+    void skip_periphery() {
+        const bool goes_on = is_letter(peek(2)) || is_digit(peek(2)) || peek(2) == '_';
+        if (tokens_.source->dialect.peripheries_are_image && at(":P") && !goes_on) at_ += 2;
     }
 
     void read_foreign() {

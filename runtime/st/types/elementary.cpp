@@ -213,6 +213,8 @@ bool same_type(const Type& a, const Type& b) {
                                           return same_name(x->text, y->text) && x->type &&
                                                  y->type && same_type(*x->type, *y->type);
                                       });
+        case Kind::standard:
+            return a.standard == b.standard && a.name == b.name;
         default:
             return false;
     }

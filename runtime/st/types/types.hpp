@@ -76,6 +76,7 @@ struct Type {
     bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
+    bool all_others_as_last = false;           ///< of them: beyond is as the last one
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
     Routine* routine = nullptr;  ///< of a block, of an interface
     const BlockType* standard = nullptr;

@@ -22,23 +22,17 @@ constexpr Instead types_of_vendors[] = {
     {" timer ", "declare an instance of TON, TOF or TP"}};
 
 constexpr Instead functions_of_vendors[] = {
-    {" peek peek_bool ", "read the variable by its name"},
-    {" poke poke_bool ", "assign to the variable by its name"},
     {" move_blk_variant ", "assign the array as a whole, or its elements in a FOR"},
     {" blkmov ", "assign the structure as a whole"},
     {" serialize deserialize ", "assign the parts one by one"},
     {" sizeof ", "declare the size as a constant"},
     {" adr ref ", "pass the variable as VAR_IN_OUT"},
     {" typeof is_array ", "write a block for each type"},
-    {" rd_sys_t rd_loc_t wr_sys_t ", "wire the time to a VAR_INPUT"},
-    {" bcd16_to_int ", "write WORD_BCD_TO_UINT(x) for a number without a sign"},
-    {" int_to_bcd16 int_to_bcd ", "write UINT_TO_BCD_WORD(x) for a number without a sign"},
-    {" bcd32_to_dint ", "write DWORD_BCD_TO_UDINT(x) for a number without a sign"},
-    {" dint_to_bcd32 ", "write UDINT_TO_BCD_DWORD(x) for a number without a sign"},
+    {" wr_sys_t ", "leave it out: the clock is that of the run, which begins 1970-01-01"},
+    {" int_to_bcd ", "write INT_TO_BCD16(x)"},
     {" runtime ", "a controller's 'instruction_time' gives what code costs"},
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
     {" s_move ", "assign the STRING with ':='"},
-    {" s_conv ", "write a conversion, as STRING_TO_INT(x) or INT_TO_STRING(x)"},
     {" t_conv ", "write a conversion, as TIME_TO_DINT(x)"},
     {" scale unscale ", "write SCALE_X(MIN := low, VALUE := NORM_X(...), MAX := high)"},
     {" fill ", "assign the elements in a FOR"},
@@ -47,10 +41,7 @@ constexpr Instead functions_of_vendors[] = {
     {" wait ", "count the time with a TON"},
     {" stp ", "end the run with 'run: {until: ...}' in the program"},
     {" re_trigr ", "leave it out: 'maximum_cycle_time' says how long a scan may last"},
-    {" getinstancename ", "give the name as a VAR_INPUT of type STRING"},
-    {" val_strg ", "write LREAL_TO_STRING(x) or DINT_TO_STRING(x)"},
-    {" strg_val ", "write STRING_TO_LREAL(x) or STRING_TO_DINT(x)"},
-    {" chars_to_strg strg_to_chars ", "keep the characters in a STRING"}};
+    {" getinstancename ", "give the name as a VAR_INPUT of type STRING"}};
 
 constexpr Instead inputs_of_vendors[] = {
     {" cam ", "select the cam with MC_CamTableSelect, and give its CamTableID"}};

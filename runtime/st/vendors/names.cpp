@@ -73,8 +73,14 @@ constexpr AddedInput added_inputs[] = {
     {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
     {"Override", 100}};
 
-/// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode.
-constexpr std::int64_t directions[] = {0, 1, 2, 0}, homing_modes[] = {0, -1, -1, -1, -1, -1, -1, 0};
+/// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode: 0 and 1 are direct
+/// homing, 6, 7, 11 and 12 adjust an encoder or the set-point alike.
+constexpr std::int64_t directions[] = {0, 1, 2, 0},
+                       homing_modes[] = {0, 3, 4, 4, 4, 4, 3, 0, 4, 4, 4, 0, 3, 4};
+
+constexpr Beginning beginnings[] = {{"mc_moveabsolute", "Direction", 1},
+                                    {"mc_movevelocity", "Velocity", 100},
+                                    {"f_trig", "last", 1}};
 
 /// Empty: it is none of theirs.
 std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
@@ -121,10 +127,14 @@ const AddedInput* find_added_input(std::string_view name) {
     return find_called(added_inputs, name, &AddedInput::name);
 }
 
-std::span<const std::int64_t> meanings_of_numbers(std::string_view input) {
-    if (input == "Direction") return directions;
-    if (input == "HomingMode") return homing_modes;
+Meanings meanings_of_numbers(std::string_view input) {
+    if (input == "Direction") return {directions};
+    if (input == "HomingMode") return {homing_modes, true};
     return {};
+}
+
+const Beginning* find_beginning(std::string_view kind) {
+    return find_called(beginnings, kind, &Beginning::kind);
 }
 
 }  // namespace lineshaft::st

@@ -47,9 +47,23 @@ struct AddedInput {
 /// Null for another name.
 const AddedInput* find_added_input(std::string_view name);
 
-/// Of an enumeration of PLCopen's commands what the numbers mean that Siemens gives it, by the name
-/// of its input: the place of a value in its list, -1 for nothing. Empty where there are none.
-std::span<const std::int64_t> meanings_of_numbers(std::string_view input);
+/// What the numbers mean that Siemens gives an enumeration of PLCopen's commands.
+struct Meanings {
+    std::span<const std::int64_t> places;  ///< of a value in its list; -1: nothing
+    bool all_others_as_last = false;  ///< of a number that has no place; else it has no meaning
+};
+
+/// By the name of the input. Empty where there are none.
+Meanings meanings_of_numbers(std::string_view input);
+
+/// What a block begins with in Siemens' SCL, and not elsewhere.
+struct Beginning {
+    std::string_view kind, part;
+    int value = 0;
+};
+
+/// Null for another kind.
+const Beginning* find_beginning(std::string_view kind);
 
 // instead.cpp
 

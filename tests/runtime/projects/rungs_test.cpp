@@ -101,6 +101,8 @@ TEST_CASE("boxes do something where power is at them, and it goes on") {
           "#y := \"Twice\"(value := #x);\n");
     CHECK(text_of(rung("Limit( min := 0, in := #x, max := 9, out => #y )")) ==
           "#y := LIMIT(MN := 0, IN := #x, MX := 9);\n");
+    CHECK(text_of(rung("Strg_Val( in := '5', format := 16#0, p := 1, out => #y )")) ==
+          "STRG_VAL(in := '5', format := 16#0, p := 1, out => #y);\n");
 }
 
 TEST_CASE("a network has a label, jumps and returns") {

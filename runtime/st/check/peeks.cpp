@@ -1,0 +1,105 @@
+#include "runtime/source/letters.hpp"
+#include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/image.hpp"
+#include "runtime/st/check/nodes.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+using Area = ImageAddress::Area;
+
+constexpr std::string_view byte_names[] = {"b0", "b1", "b2", "b3"};
+
+Token named(const Expression& like, std::string_view text) {
+    return {.word = Word::name, .place = like.place, .text = text};
+}
+
+/// What the call gives for `names`, in their order, by name or by place; empty, and told, where it
+/// gives something else.
+std::vector<Expression*> given_for(Checking& c, const Expression& call,
+                                   const std::vector<std::string_view>& names) {
+    std::vector<Expression*> given;
+    for (const std::string_view name : names) {
+        const Argument* one = find_called(call.arguments, name, &Argument::name);
+        const std::size_t place = given.size();
+        if (!one && place < call.arguments.size() && !call.arguments[place].is_named())
+            one = &call.arguments[place];
+        if (one) given.push_back(one->value);
+    }
+    if (given.size() == names.size() && given.size() == call.arguments.size()) return given;
+    c.fail(code::wrong_arguments, call.operands[0]->place,
+           fmt::format("{} takes {}", call.operands[0]->token.text, fmt::join(names, ", ")));
+    return {};
+}
+
+std::optional<Area> area_of(Checking& c, Expression*& number) {
+    if (!check(c, number)) return {};
+    become_lint(c, number);
+    constexpr int first = 0x81;
+    const Wide area = is_constant(*number) ? number->constant.integer - first : -1;
+    if (area >= 0 && area < Wide{areas}) return static_cast<Area>(area);
+    c.fail(code::not_supported, number->place,
+           "PEEK and POKE are of the areas 16#81, 16#82 and 16#83: inputs, outputs and memory bits",
+           "use a variable of a data block by its name");
+    return {};
+}
+
+/// How many bytes are read or written; 0: what is written has no such number, which was told.
+int count_of(Checking& c, std::string_view function, Expression*& value) {
+    if (function.ends_with("_WORD")) return 2;
+    if (function.ends_with("_DWORD")) return 4;
+    if (function != "POKE") return 1;
+    const Type* type = check(c, value);
+    if (!type) return 0;
+    if (type->is_any()) return 1;
+    const bool fits = (type->kind == Kind::bits || type->is_integer()) && type->bits <= 32;
+    if (fits) return type->bits / 8;
+    c.fail(code::type_does_not_fit, value->place,
+           fmt::format("POKE writes a BYTE, a WORD or a DWORD, not {}", describe(*type)));
+    return 0;
+}
+
+}  // namespace
+
+bool take_bytes(Checking& c, Expression*& e, const Routine& called) {
+    const std::string function = upper(called.pou->name.text);
+    const bool writes = function.starts_with("POKE");
+    const bool is_one = is_prelude(called.pou->name) && (writes || function.starts_with("PEEK"));
+    if (!is_one || e->place.source->is_prelude()) return true;
+    std::vector<std::string_view> names{"area", "dbNumber", "byteOffset"};
+    const bool is_bit = function.ends_with("_BOOL");
+    if (is_bit) names.emplace_back("bitOffset");
+    if (writes) names.emplace_back("value");
+    std::vector<Expression*> given = given_for(c, *e, names);
+    if (given.empty()) return false;
+    const auto area = area_of(c, given[0]);
+    const int count = count_of(c, function, given.back());
+    if (!area || count == 0 || !check(c, given[2])) return false;
+    if (has_call(*given[2]))
+        return c.fail(code::not_supported, given[2]->place, "a call as byteOffset is not supported",
+                      "assign it to a variable");
+    become_lint(c, given[2]);
+    Variable& bytes = bytes_of_area(c, e->token, *area);
+    const auto byte_at = [&](int i) {
+        Expression* element = make(c, E::index, *e);
+        element->operands[0] = make_use(c, *e, bytes);
+        element->arguments.push_back(
+            {.value = make_binary(c, e->place, e->place, Word::plus, given[2],
+                                  make_constant(c, *e, lint_type, {.integer = i}))});
+        return element;
+    };
+    std::vector<Argument> arguments;
+    for (int i = 0; i < count; ++i)
+        arguments.push_back(
+            {.name = named(*e, byte_names[i]), .is_output = writes, .value = byte_at(i)});
+    if (is_bit) arguments.push_back({.name = named(*e, "bitOffset"), .value = given[3]});
+    if (is_bit && writes) arguments.push_back({.name = named(*e, "before"), .value = byte_at(0)});
+    if (writes) arguments.push_back({.name = named(*e, "value"), .value = given.back()});
+    e = make_with(c, *e, std::move(arguments));
+    return true;
+}
+
+}  // namespace lineshaft::st
