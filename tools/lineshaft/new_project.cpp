@@ -71,7 +71,8 @@ bool is_program(const BlockType& kind) {
 std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks) {
     std::vector<NewBlock> blocks;
     const auto add = [&](const BlockType& kind, const std::string& task) {
-        std::string name(kind.name);
+        std::string name;
+        for (const char c : kind.name) name += is_letter(c) || is_digit(c) ? c : '_';
         if (is_digit(name.front())) name.insert(0, "_");
         for (const NewBlock& other : blocks)
             if (other.name == name) name += "_" + task;

@@ -14,6 +14,13 @@ pugi::xml_node owner_of(pugi::xml_node body) {
     return pou;
 }
 
+/// A chart that CODESYS has beside an empty text.
+pugi::xml_node free_chart(pugi::xml_node body) {
+    for (const pugi::xml_node data : body.child("addData").children("data"))
+        if (const auto chart = data.child("CFC")) return chart;
+    return {};
+}
+
 }  // namespace
 
 BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string& name) {
@@ -22,7 +29,11 @@ BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string&
         const std::string_view form = language.name();
         if (language.type() != pugi::node_element || form == "documentation") continue;
         const Mark place = context.file.mark_of_tag(language);
-        if (form == "ST") {
+        if (const auto drawn = free_chart(body); drawn && context.file.plain(language).empty()) {
+            context.out.add(code::not_supported, context.file.mark_of_tag(drawn),
+                            fmt::format("the body of '{}' is drawn (CFC), which is not read", name),
+                            "convert it to Structured Text, or leave it out");
+        } else if (form == "ST") {
             context.file.copy(made.statements, language);
             made.statements.write("\n", place);
         } else if (form == "FBD" || form == "LD") {

@@ -37,6 +37,7 @@ class ChartText {
     void add_steps_behind(pugi::xml_node node, Nodes& steps, Seen& seen);
 
     void add_step(pugi::xml_node step);
+    void add_own_actions(pugi::xml_node step);
     void add_action(pugi::xml_node action);
     void add_transition(pugi::xml_node transition);
     void add_steps(const Nodes& steps, pugi::xml_node transition);
@@ -159,7 +160,24 @@ void ChartText::add_step(pugi::xml_node step) {
         for (const pugi::xml_node block : found->second)
             if (is(block, "actionBlock"))
                 for (const pugi::xml_node action : block.children("action")) add_action(action);
+    add_own_actions(step);
     write("END_STEP\n", step);
+}
+
+/// Those that CODESYS keeps at the step itself: at its beginning, while it is active, at its end.
+void ChartText::add_own_actions(pugi::xml_node step) {
+    static constexpr std::pair<std::string_view, std::string_view> kinds[] = {
+        {"a6b08bd8-b696-47e3-9cbf-7408b61c9ff8", "(P1)"},
+        {"700a583f-b4d4-43e4-8c14-629c7cd3bec8", "(N)"},
+        {"a2621e18-7de3-4ea6-ae6d-89e9e0b7befd", "(P0)"}};
+    for (const auto& [kind, qualifier] : kinds)
+        for (const pugi::xml_node data : step.child("addData").children("data"))
+            for (const pugi::xml_node own : data.child("attributes").children("attribute")) {
+                if (text(own, "guid") != kind || file_.plain(own).empty()) continue;
+                write("    ", own);
+                file_.copy(made_.statements, own);
+                write(fmt::format("{};\n", qualifier), own);
+            }
 }
 
 /// That of an instance, `motor.Turn`, is called in an action of the chart's own.

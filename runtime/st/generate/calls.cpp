@@ -289,7 +289,7 @@ void call_instance(Writing& w, const Expression& e) {
         if (argument.variable->section != Section::output || is_set(argument))
             assign(w, part(w, frame, *argument.variable), *argument.variable->type,
                    *argument.value);
-    const std::uint32_t number = w.standard_number(*type.standard);
+    const std::uint32_t number = w.standard_number(e.called_as ? *e.called_as : *type.standard);
     w.place = e.place;
     Jumps runs, mocked;
     if (w.has_tests) {

@@ -54,9 +54,25 @@ Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     return is_date ? w.emit(Op::sub_lint, wanted, slot, clock) : clock;
 }
 
-/// A time is in ns as an integer of 64 bits. As any other number a TIME and a TOD are in ms, as
-/// IEC 61131-3's vendors have it, a DT and a DATE in s, and an LTIME as a real number in ns; in 16
-/// bits a DATE is in days since 1990, as Siemens has it.
+/// As a whole number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE
+/// in s; in 16 bits a DATE is in days since 1990, as Siemens has it.
+Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
+    constexpr std::uint64_t day = 86'400'000'000'000;
+    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    const Slot unit = w.constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
+    const Slot start = w.constant_slot(in_days ? 7305 * day : 0);
+    if (to.is_time()) {
+        if (!in_days) return w.emit(Op::mul_lint, wanted, slot, unit);
+        return w.emit(Op::add_lint, wanted, w.emit(Op::mul_lint, none, slot, unit), start);
+    }
+    if (in_days) slot = w.emit(Op::sub_lint, none, slot, start);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
+}
+
+/// A time is in ns as an integer of 64 bits, but in dialects that count those as all others; as a
+/// real number an LTIME is.
 Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
@@ -70,17 +86,16 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
         const Slot counted = w.emit(Op::div_lreal, wanted, real, one);
         return to.bits == 32 ? w.emit(Op::narrow, wanted, counted) : counted;
     }
-    if (number.bits == 64) return slot;
-    constexpr std::uint64_t day = 86'400'000'000'000;
-    const bool in_days = time.kind == Kind::date && number.bits == 16;
-    const Slot unit = w.constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
-    const Slot start = w.constant_slot(in_days ? 7305 * day : 0);
-    if (to.is_time()) {
-        if (!in_days) return w.emit(Op::mul_lint, wanted, slot, unit);
-        return w.emit(Op::add_lint, wanted, w.emit(Op::mul_lint, none, slot, unit), start);
-    }
-    if (in_days) slot = w.emit(Op::sub_lint, none, slot, start);
-    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
+    return number.bits == 64 ? slot : convert_counted(w, slot, from, to, wanted);
+}
+
+/// Of a TIME, a TOD, a DT or a DATE and 64 bits; the prelude reckons in ns.
+bool is_counted(const Expression& e) {
+    if (!e.place.dialect().long_numbers_count_time || e.place.source->is_prelude()) return false;
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    return from.is_time() != to.is_time() && !time.counts_ns && number.bits == 64 &&
+           (number.is_integer() || number.is_bits());
 }
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
@@ -141,6 +156,9 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (!e.conversion.is_written && is_wide(w, operand) &&
         (e.type->is_number() || e.type->is_bits()))
         return convert_wide(w, wide_value(w, operand), *e.type, wanted);
+    if (is_counted(e))
+        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(),
+                               wanted);
     return convert(w, value(w, operand), *operand.type, *e.type, e.conversion.truncates, wanted);
 }
 

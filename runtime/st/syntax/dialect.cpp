@@ -37,6 +37,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
                          .texts_have_any_length = true,
+                         .long_numbers_count_time = true,
                          .reckons_wide = true};
 
 const Dialect scl = {.sign_precedes_power = false,
@@ -49,7 +50,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .packs_as_s7 = true,
                      .instances_begin_as_siemens = true,
                      .peripheries_are_image = true,
-                     .dint_is_time = true};
+                     .dint_is_time = true,
+                     .long_numbers_count_time = true};
 
 const Dialect& dialect_of(std::string_view path) {
     struct Ending {

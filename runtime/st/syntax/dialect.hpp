@@ -33,6 +33,7 @@ struct Dialect {
     bool peripheries_are_image = false;       ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
     bool dint_is_time = false;                ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;       ///< STRING[0], and a reference to it is one to any
+    bool long_numbers_count_time = false;     ///< TIME_TO_LINT(T#1s) is 1000, else in ns
     bool reckons_wide = false;    ///< whole numbers in 64 bits, until they are kept, as on x64
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
 };

@@ -13,6 +13,10 @@
 #include "runtime/st/syntax/token.hpp"
 
 /// What the parser makes of a source, and what the checker notes in it.
+namespace lineshaft {
+struct BlockType;
+}
+
 namespace lineshaft::st {
 
 struct Type;
@@ -84,7 +88,8 @@ struct Expression {
     Routine* routine = nullptr;                  ///< that a name means, or a call calls
     bool is_dispatched = false;                  ///< a call: the instance says which routine
     const StandardFunction* standard = nullptr;  ///< that a call calls
-    Expression* initial = nullptr;               ///< what it is to all of `a, b : INT := 2 + 3`
+    const BlockType* called_as = nullptr;  ///< a call: of an IEC_TIMER, which is any of the timers
+    Expression* initial = nullptr;         ///< what it is to all of `a, b : INT := 2 + 3`
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 

@@ -283,6 +283,37 @@ END_PROGRAM
 )");
 }
 
+TEST_CASE("what CODESYS keeps at a step are its actions") {
+    const auto own = [](const std::string& kind, const std::string& name) {
+        return "<attribute guid=\"" + kind + "\">" + name + "</attribute>";
+    };
+    const std::string attributes = "<addData><data name=\"x\"><attributes>" +
+                                   own("a6b08bd8-b696-47e3-9cbf-7408b61c9ff8", "Enter") +
+                                   own("700a583f-b4d4-43e4-8c14-629c7cd3bec8", "Work") +
+                                   own("a2621e18-7de3-4ea6-ae6d-89e9e0b7befd", "") +
+                                   "</attributes></data></addData>";
+    const auto action = [](const std::string& name) {
+        return "<action name=\"" + name + "\"><body><ST><p>x := x + 1;</p></ST></body></action>";
+    };
+    const Read made = read(program(
+        "SFC",
+        element("step", 1, 1, in(from(2)) + attributes, "name=\"Begin\" initialStep=\"true\"") +
+            element("transition", 2, 2,
+                    in(from(1)) + "<condition><inline><ST><p>a</p></ST></inline></condition>") +
+            element("jumpStep", 3, 3, in(from(2)), "targetName=\"Begin\""),
+        "<actions>" + action("Enter") + action("Work") + "</actions>"));
+    CHECK(made.messages == "");
+    CHECK(made.text.find("INITIAL_STEP Begin:\n    Enter(P1);\n    Work(N);\nEND_STEP") !=
+          std::string::npos);
+}
+
+TEST_CASE("a chart that is drawn freely beside an empty text is told") {
+    std::string xml = program("ST", "<p></p>");
+    xml.insert(xml.find("</body>"), "<addData><data name=\"cfc\"><CFC></CFC></data></addData>");
+    CHECK(read(xml).messages.find("the body of 'P' is drawn (CFC), which is not read") !=
+          std::string::npos);
+}
+
 TEST_CASE("an instruction list is what its results are stored in") {
     const Read made = read(program("IL", R"(LD a (* why *)
 AND( b
