@@ -301,11 +301,11 @@ void call_ctud(struct ctud* b) {
 }
 
 void call_r_trig(struct r_trig* b) {
-    b->q = rises(b->clk, &b->before);
+    b->q = rises(b->clk, &b->last);
 }
 
 void call_f_trig(struct f_trig* b) {
-    b->q = rises(!b->clk, &b->before);
+    b->q = rises(!b->clk, &b->last);
 }
 
 void call_sr(struct sr* b) {

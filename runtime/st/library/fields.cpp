@@ -74,7 +74,14 @@ class FieldWriter {
     /// Of a data block, whose variables are all its own.
     void write_member(const Variable& member) {
         write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
-              Direction::local, member);
+              pin_of(member, Direction::local), member);
+    }
+
+    /// `AT %I*` and `AT %Q*` are wired from outside wherever they stand.
+    static Direction pin_of(const Variable& variable, Direction other) {
+        return variable.pin == Section::input    ? Direction::input
+               : variable.pin == Section::output ? Direction::output
+                                                 : other;
     }
 
     static Direction direction_of(const Variable& variable) {
@@ -106,7 +113,7 @@ class FieldWriter {
                 return;
             case Kind::structure:
                 for (const Variable* member : type.members)
-                    write(*member, slot, name + ".", direction);
+                    write(*member, slot, name + ".", pin_of(*member, direction));
                 return;
             case Kind::standard:
                 for (const Variable* member : type.members)

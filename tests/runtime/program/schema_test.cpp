@@ -31,8 +31,8 @@ TEST_CASE("schema: a block's keys are its parameters and inputs") {
     const Json& gain = schema.at("definitions").at("block_gain");
     std::vector<std::string> keys;
     for (const auto& [key, value] : gain.at("properties").items()) keys.push_back(key);
-    CHECK(keys ==
-          std::vector<std::string>{"type", "task", "cost", "initial", "unit", "factor", "x"});
+    CHECK(keys == std::vector<std::string>{"type", "task", "cost", "called", "initial", "unit",
+                                           "factor", "x"});
     CHECK(gain.at("required") == Json::array({"type", "task", "x"}));
     CHECK(gain.at("additionalProperties") == false);
     CHECK(gain.at("properties").at("x").at("description") == "input: taken [unit]; must be set");
@@ -58,7 +58,7 @@ TEST_CASE("schema: the forms of a value") {
     CHECK_FALSE(has_form(probe.at("length"), reference("interval")));
     CHECK(has_form(probe.at("pace"), Json{{"enum", {"slow", "fast"}}}));
     for (const auto& [key, value] : probe.items())
-        if (key != "type" && key != "task" && key != "cost" && key != "initial")
+        if (key != "type" && key != "task" && key != "cost" && key != "called" && key != "initial")
             CHECK(has_form(value, reference("parameter")));
 }
 
