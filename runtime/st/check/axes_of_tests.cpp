@@ -85,7 +85,7 @@ bool is_setup(const Routine& routine) {
 }  // namespace
 
 void give_axes_to_tests(Checking& c) {
-    if (!c.has_tests) return;
+    if (!c.has_tests || !c.out.empty()) return;
     std::vector<Variable*> globals;
     for (Variable& variable : c.checked.variables)
         if (variable.space == Space::global && variable.named < 0 && variable.type &&
