@@ -1,6 +1,7 @@
 #include "runtime/run/origin.hpp"
 
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,15 +29,20 @@ std::string text_of(const ForcePlan& force) {
 TraceOrigin origin_of(const Loaded& loaded) {
     const auto& [program, linked] = loaded;
     const Meaning meaning = meaning_of(program);
+    // Of nothing, [] and push_back() leave half an object where memory ends.
     Json run{{"program", file_name(program.file->path)}, {"form", meaning.form}};
-    for (const auto& [name, value] : program.parameters) run["parameters"][name] = value;
+    Json parameters = Json::object(), forces = Json::array(), replays = Json::array();
+    for (const auto& [name, value] : program.parameters) parameters[name] = value;
+    if (!parameters.empty()) run["parameters"] = std::move(parameters);
     run["seed"] = linked.machine.seed;
     if (program.controller_name)
         run["controller"] = {{"file", file_name(program.controller_name->text)},
                              {"hash", meaning.controller}};
-    for (const ForcePlan& force : program.forces) run["forces"].push_back(text_of(force));
+    for (const ForcePlan& force : program.forces) forces.push_back(text_of(force));
+    if (!forces.empty()) run["forces"] = std::move(forces);
     for (const ReplayedFile& file : linked.machine.replayed)
-        run["replays"].push_back({{"file", file_name(file.name)}, {"crc32", file.crc32}});
+        replays.push_back({{"file", file_name(file.name)}, {"crc32", file.crc32}});
+    if (!replays.empty()) run["replays"] = std::move(replays);
     return {.title = program.title,
             .program = meaning.in_force,
             .run = std::move(run),
