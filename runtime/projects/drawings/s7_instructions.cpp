@@ -26,10 +26,15 @@ Value inverted_contact(Running& r) {
     return r.and_(r.power, r.not_(r.operand("operand")));
 }
 
-/// Of its operand; that it had one is in `bit`.
+/// Whether `now` has just come, or gone; what it was is in `bit`.
+Value edge_of(const Running& r, const Value& now, const Value& bit, bool is_rising) {
+    return is_rising ? r.and_(now, r.not_(bit)) : r.and_(r.not_(now), bit);
+}
+
+/// Of its operand.
 Value edge_contact(Running& r, bool is_rising) {
     const Value bit = r.operand("bit"), signal = r.operand("operand"), edge = r.wire();
-    r.assign(edge, is_rising ? r.and_(signal, r.not_(bit)) : r.and_(r.not_(signal), bit));
+    r.assign(edge, edge_of(r, signal, bit, is_rising));
     r.assign(bit, signal);
     return r.and_(r.power, edge);
 }
@@ -44,7 +49,7 @@ Value falling_contact(Running& r) {
 Value edge_of_power(Running& r, bool is_rising) {
     const Value bit = r.operand("bit"), edge = r.wire();
     const Value power = r.all.fixed(r.to, r.power, r.it.place);
-    r.assign(edge, is_rising ? r.and_(power, r.not_(bit)) : r.and_(r.not_(power), bit));
+    r.assign(edge, edge_of(r, power, bit, is_rising));
     r.assign(bit, power);
     return edge;
 }
@@ -145,8 +150,7 @@ Value reset_coil(Running& r) {
 
 Value edge_coil(Running& r, bool is_rising) {
     const Value power = r.all.fixed(r.to, r.power, r.it.place), bit = r.operand("bit");
-    r.assign(r.operand("operand"),
-             is_rising ? r.and_(power, r.not_(bit)) : r.and_(r.not_(power), bit));
+    r.assign(r.operand("operand"), edge_of(r, power, bit, is_rising));
     r.assign(bit, power);
     return power;
 }
