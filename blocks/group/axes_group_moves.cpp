@@ -21,8 +21,13 @@ PathVector sum(const PathVector& a, const PathVector& b, double factor = 1) {
     return out;
 }
 
+/// What positions are rounded to at the most: README.md, "Moves".
+double rounding_in(AxisUnit unit) {
+    return unit == AxisUnit::mm || unit == AxisUnit::deg ? 0.01 : 1e-5;
+}
+
 PathFault arc_of(const GroupRequest& request, const PathVector& from, const PathVector& to,
-                 PathCurve& out) {
+                 double rounding, PathCurve& out) {
     const bool relative = is_relative(request.command);
     const PathVector a = in_space(from), b = in_space(to);
     const PathVector auxiliary =
@@ -32,19 +37,21 @@ PathFault arc_of(const GroupRequest& request, const PathVector& from, const Path
     if (request.circle == CircleMode::border)
         fault = arc_through(a, auxiliary, b, out);
     else if (request.circle == CircleMode::centre)
-        fault = arc_about(a, auxiliary, b, sum({}, normal_upwards(a, auxiliary, b), turn), out);
+        fault = arc_about(a, auxiliary, b, sum({}, normal_upwards(a, auxiliary, b), turn), rounding,
+                          out);
     else
-        fault = arc_of_radius(a, b, sum({}, sum(auxiliary, a, -1), turn), out);
+        fault = arc_of_radius(a, b, sum({}, sum(auxiliary, a, -1), turn), rounding, out);
     if (fault == PathFault::none) let_follow(out, from, to);
     return fault;
 }
 
-PathFault curve_of(const GroupRequest& request, const PathVector& from, PathCurve& out) {
+PathFault curve_of(const GroupRequest& request, const PathVector& from, double rounding,
+                   PathCurve& out) {
     using enum GroupCommand;
     const GroupCommand command = request.command;
     const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
     if (command == move_circular_absolute || command == move_circular_relative)
-        return arc_of(request, from, to, out);
+        return arc_of(request, from, to, rounding, out);
     const bool direct = command == move_direct_absolute || command == move_direct_relative;
     return line_to(from, to, out, direct ? most_path_axes : path_space);
 }
@@ -124,9 +131,10 @@ void AxesGroup::lay(const Context& context) {
 
 MotionError AxesGroup::lay(const Context& context, GroupJob& job) {
     if (job.request.command == GroupCommand::move_path) return lay_table(context, job);
-    if (!has_room(most_spline_parts)) return MotionError::none;
+    if (!has_room(most_transition_parts)) return MotionError::none;
     PathCurve curve;
-    const PathFault fault = curve_of(job.request, job.frame.inverse().place(end_point), curve);
+    const PathFault fault =
+        curve_of(job.request, job.frame.inverse().place(end_point), rounding_in(unit), curve);
     job.first_piece = job.end_piece = static_cast<std::int64_t>(path.count);
     if (fault == PathFault::none) {
         if (const MotionError why = append(context, job.request, job.frame.curve(curve), false);

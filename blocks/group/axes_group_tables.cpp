@@ -56,8 +56,10 @@ MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
             return why;
     }
     PathRowCurves curves;
-    for (; job.rows < points.size && has_room(most_spline_parts); ++job.rows) {
+    for (; job.rows < points.size; ++job.rows) {
         const auto i = static_cast<std::size_t>(job.rows);
+        const bool is_spline = points.rows[i].kind == PathPointKind::spline;
+        if (!has_room(is_spline ? most_spline_parts : most_transition_parts)) break;
         std::size_t count = 0;
         const PathCurve last = last_curve(job);
         if (curves_of(points.rows[i], behind(points, i), job.frame.inverse().place(end_point),

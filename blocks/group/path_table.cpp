@@ -6,22 +6,41 @@ namespace lineshaft {
 
 namespace {
 
+/// A row of rotary axes alone is a line.
+bool is_spline(const PathTablePoint& row, const PathVector& from) {
+    return row.kind == PathPointKind::spline && in_space(row.target()) != in_space(from);
+}
+
 /// Of a row that is no spline.
 PathFault curve_of(const PathTablePoint& row, const PathVector& from, PathCurve& out) {
     const PathVector to = row.target();
-    if (row.kind == PathPointKind::line) return line_to(from, to, out, path_space);
+    if (row.kind != PathPointKind::arc) return line_to(from, to, out, path_space);
     const PathFault fault = arc_through(in_space(from), row.auxiliary(), in_space(to), out);
     if (fault == PathFault::none) let_follow(out, from, to);
     return fault;
 }
 
+PathVector difference(const PathVector& a, const PathVector& b) {
+    PathVector out{};
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = a[i] - b[i];
+    return out;
+}
+
+/// Neither turns back nor stands.
+bool goes_on(const PathVector& a, const PathVector& b) {
+    return in_space(a) != PathVector{} && in_space(b) != PathVector{} && !turns_back(a, b);
+}
+
 PathPoint passage(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from) {
-    const PathVector at = row.target();
-    if (next == nullptr) return waypoint(from, at, at);
+    const PathVector at = row.target(), way = difference(at, from);
+    const PathPoint alone = waypoint(from, at, at);
+    if (next == nullptr) return alone;
     PathCurve behind;
-    if (next->kind != PathPointKind::spline && curve_of(*next, at, behind) == PathFault::none)
-        return behind.at(0);
-    return waypoint(from, at, next->target());
+    if (is_spline(*next, at) || curve_of(*next, at, behind) != PathFault::none)
+        return goes_on(way, difference(next->target(), at)) ? waypoint(from, at, next->target())
+                                                            : alone;
+    const PathPoint begin = behind.at(0);
+    return goes_on(way, begin.tangent) ? begin : alone;
 }
 
 }  // namespace
@@ -29,10 +48,12 @@ PathPoint passage(const PathTablePoint& row, const PathTablePoint* next, const P
 PathFault curves_of(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from,
                     const PathCurve* before, PathRowCurves& out, std::size_t& count) {
     count = 1;
-    if (row.kind != PathPointKind::spline) return curve_of(row, from, out[0]);
-    if (row.target() == from) return PathFault::no_length;
-    const PathPoint begin =
-        before ? before->at(before->length) : waypoint(from, from, row.target());
+    if (!is_spline(row, from)) return curve_of(row, from, out[0]);
+    PathPoint begin = waypoint(from, from, row.target());
+    if (before) {
+        const PathPoint end = before->at(before->length);
+        if (goes_on(end.tangent, begin.tangent)) begin = end;
+    }
     count = spline_between(begin, passage(row, next, from), out);
     return count > 0 ? PathFault::none : PathFault::not_finite;
 }

@@ -38,7 +38,8 @@ using PathRowCurves = std::array<PathCurve, most_spline_parts>;
 
 /// The curves of a row from the point before: one, or the parts of a spline. That begins as the
 /// curve `before` ends, if there is one, and passes its own point as the line or arc of the `next`
-/// row begins, else along the parabola through the points before and behind.
+/// row begins, else along the circle through the points before and behind. Where the way turns back
+/// it ends and begins along its own chord: a stop.
 PathFault curves_of(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from,
                     const PathCurve* before, PathRowCurves& out, std::size_t& count);
 

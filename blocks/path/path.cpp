@@ -245,7 +245,7 @@ bool find_round(const PathCurve& before, const PathCurve& after, double far,
     }
     for (std::size_t i = 0; i < out.count; ++i)
         if (!is_good(out.boxes[i])) return false;
-    return out.count > 0;
+    return out.count > 0 && out.count <= most_transition_parts;
 }
 
 /// Joins a line or an arc to the last one by a corner or a transition. False, and nothing has

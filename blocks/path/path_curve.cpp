@@ -83,6 +83,12 @@ PathFault finish_arc(PathCurve& arc, double angle, PathCurve& out) {
 /// Below this sine of an angle three points lie on one line: the centre is not known to 1e-9.
 constexpr double least_sine = 1e-6;
 
+/// How far what is given of an arc may be from one.
+double rounding_of(double radius, double rounding) {
+    constexpr double relative = 1e-3, most = 0.1;
+    return std::fmax(relative * radius, std::fmin(rounding, most * radius));
+}
+
 /// Of a line or an arc, also where that is before its end.
 PathVector place_on(PathCurve curve, double s) {
     curve.length = 2 * s;
@@ -259,7 +265,7 @@ PathFault arc_through(const PathVector& from, const PathVector& border, const Pa
 }
 
 PathFault arc_about(const PathVector& from, const PathVector& centre, const PathVector& to,
-                    const PathVector& normal, PathCurve& out) {
+                    const PathVector& normal, double rounding, PathCurve& out) {
     if (!finite(from) || !finite(centre) || !finite(to)) return PathFault::not_finite;
     const PathVector n = unit(in_space(normal));
     if (!finite(n)) return PathFault::no_arc;
@@ -268,15 +274,18 @@ PathFault arc_about(const PathVector& from, const PathVector& centre, const Path
     const double size = size_of(begin);
     if (!std::isfinite(size) || !std::isfinite(size_of(last))) return PathFault::not_finite;
     const double off = std::fmax(std::abs(product(begin, n)), std::abs(product(last, n)));
-    if (size == 0 || !(std::fmax(off, std::abs(size_of(last) - size)) <= least_sine * size))
+    if (size == 0 || off > least_sine * size ||
+        !(std::abs(size_of(last) - size) <= rounding_of(size, rounding)))
         return PathFault::no_arc;
     const PathVector chord = in_space(difference(to, from));
     const bool closed = size_of(chord) == 0;
     if (!closed && size_of(chord) < least_sine * size) return PathFault::no_arc;
     // Moved to where both ends are equally far: what is given is rounded, and would be a jump.
     const PathVector middle = combined(from, 0.5, to, 0.5);
-    PathVector to_centre = in_space(difference(centre, middle));
-    if (!closed) to_centre = upright(to_centre, unit(chord));
+    const PathVector given = in_space(difference(centre, middle));
+    const PathVector to_centre = closed ? given : upright(given, unit(chord));
+    constexpr double most_moved = 0.1;
+    if (size_of(difference(given, to_centre)) > most_moved * size) return PathFault::no_arc;
     PathCurve arc;
     arc.origin = in_space(combined(middle, 1, to_centre, 1));
     arc.radius = size_of(in_space(difference(from, arc.origin)));
@@ -292,18 +301,20 @@ PathFault arc_about(const PathVector& from, const PathVector& centre, const Path
 }
 
 PathFault arc_of_radius(const PathVector& from, const PathVector& to, const PathVector& normal,
-                        PathCurve& out) {
+                        double rounding, PathCurve& out) {
     if (!finite(from) || !finite(to) || !finite(normal)) return PathFault::not_finite;
     const PathVector chord = in_space(difference(to, from));
     const double length = size_of(chord), radius = size_of(in_space(normal));
     if (!(length > 0)) return PathFault::no_length;
-    const PathVector n = unit(in_space(normal)), e = unit(chord);
-    if (!finite(n) || std::abs(product(n, e)) > least_sine) return PathFault::no_arc;
+    const PathVector e = unit(chord), given = unit(in_space(normal));
+    const double most = rounding_of(radius, rounding);
+    if (!finite(given) || std::abs(product(given, e)) * radius > most) return PathFault::no_arc;
+    const PathVector n = unit(upright(given, e));
     const double half = 0.5 * length;
-    if (half > radius * (1 + least_sine)) return PathFault::no_arc;
+    if (half > radius + most) return PathFault::no_arc;
     const double height = half < radius ? std::sqrt((radius - half) * (radius + half)) : 0;
     const PathVector middle = combined(from, 0.5, to, 0.5);
-    return arc_about(from, combined(middle, 1, cross(n, e), height), to, normal, out);
+    return arc_about(from, combined(middle, 1, cross(n, e), height), to, n, rounding, out);
 }
 
 PathVector normal_upwards(const PathVector& from, const PathVector& centre, const PathVector& to) {

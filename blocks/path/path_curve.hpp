@@ -90,16 +90,18 @@ PathFault arc_through(const PathVector& from, const PathVector& border, const Pa
                       PathCurve& out);
 
 /// The arc about `centre`, counter-clockwise to one who looks at it from the tip of `normal`; from
-/// a point to itself the whole circle. In the first three axes. What of the ends does not lie in
-/// the plane through the centre, and the difference of their radii, may be 1e-6 of the radius: the
-/// centre is moved to where both ends are equally far.
+/// a point to itself the whole circle. In the first three axes, from and to exactly where they are.
+/// What is given is rounded: the radii of both ends may differ by the greater of a thousandth of
+/// them and `rounding` [u], that by a tenth of them at most. The centre is moved to where both
+/// ends are equally far, and not further than a tenth of the radius.
 PathFault arc_about(const PathVector& from, const PathVector& centre, const PathVector& to,
-                    const PathVector& normal, PathCurve& out);
+                    const PathVector& normal, double rounding, PathCurve& out);
 
 /// The arc whose radius is the length of `normal`, counter-clockwise as above, and at most a half
-/// of the circle.
+/// of the circle. By as much as above the ends may be further apart than the circle is wide, which
+/// is made wider, and the tip of `normal` may be beside the upright on them.
 PathFault arc_of_radius(const PathVector& from, const PathVector& to, const PathVector& normal,
-                        PathCurve& out);
+                        double rounding, PathCurve& out);
 
 /// Stands upright on the plane of an arc about a centre and points up: to where the third axis
 /// grows, or in a plane that is upright itself the second, or the first. Where the three points are

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <sleef.h>
+
 #include "blocks/path/path_polynomial.hpp"
 
 namespace lineshaft {
@@ -84,17 +86,18 @@ void find_map(PathCurve& c) {
     c.map = hermite(0, c.length / a.speed, bend(a), 1, c.length / b.speed, bend(b));
 }
 
-bool is_even(const PathCurve& c) {
-    constexpr double most = 1e-4;
+/// How far |x'| is from 1 at most; NaN where it is not finite somewhere.
+double unevenness(const PathCurve& c) {
     constexpr int places = 33;
     const Polynomial slope = derivative_of(c.map);
+    double most = 0;
     for (int k = 0; k < places; ++k) {
         const double share = static_cast<double>(k) / (places - 1);
         const double tangent =
             pace_at(c, value_of(c.map, share)).speed * value_of(slope, share) / c.length;
-        if (!(std::abs(tangent - 1) <= most)) return false;
+        if (!(std::abs(tangent - 1) <= most)) most = std::abs(tangent - 1);
     }
-    return true;
+    return most;
 }
 
 PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
@@ -109,18 +112,39 @@ PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
     return c;
 }
 
-/// The k-th of `count` parts.
-PathCurve part(const PathCurve& whole, std::size_t k, std::size_t count) {
+/// From t = `at` on, of the width `width`.
+PathCurve part(const PathCurve& whole, double at, double width) {
     PathCurve c = whole;
-    const double width = 1.0 / static_cast<double>(count);
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         const Polynomial p = polynomial_of(whole, i);
-        set(c, i, part_of(p, static_cast<double>(k) * width, width));
-        if (k + 1 < count) c.end[i] = value_of(p, static_cast<double>(k + 1) * width);
+        set(c, i, part_of(p, at, width));
+        if (at + width < 1) c.end[i] = value_of(p, at + width);
     }
     c.length = length_of(c);
     if (c.length > 0) find_map(c);
     return c;
+}
+
+/// Into halves, quarters and so on, where they are not as even as that; 0 where there would be too
+/// many. From the first one on, with what is behind it waiting.
+std::size_t divide(const PathCurve& whole, double most_uneven,
+                   std::span<PathCurve, most_spline_parts> out) {
+    std::array<double, most_spline_parts> widths{1.0};
+    std::size_t count = 0, waiting = 1;
+    for (double at = 0; waiting > 0;) {
+        double& width = widths[waiting - 1];
+        out[count] = part(whole, at, width);
+        if (out[count].length > 0 && unevenness(out[count]) <= most_uneven) {
+            at += width;
+            ++count;
+            --waiting;
+            continue;
+        }
+        if (count + waiting == out.size()) return 0;
+        width *= 0.5;
+        widths[waiting++] = width;
+    }
+    return count;
 }
 
 double distance(const PathVector& a, const PathVector& b) {
@@ -167,35 +191,52 @@ std::size_t spline_between(const PathPoint& from, const PathPoint& to,
     if (!(scale > 0) || !std::isfinite(scale)) return 0;
     for (int step = 0; step < 2; ++step) scale = length_of(quintic(from, to, scale));
     const PathCurve whole = quintic(from, to, scale);
-    for (std::size_t count = 1; count <= out.size(); count *= 2) {
-        bool all = true;
-        for (std::size_t k = 0; k < count && all; ++k) {
-            out[k] = part(whole, k, count);
-            all = out[k].length > 0 && is_even(out[k]);
-        }
-        if (all) return count;
-    }
+    for (const double most_uneven : {1e-4, 4e-4, 2e-3, 1e-2})
+        if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
     return 0;
+}
+
+bool turns_back(const PathVector& a, const PathVector& b) {
+    constexpr double least_sine = 1e-6;
+    double aa = 0, ab = 0, off = 0, bb = 0;
+    for (std::size_t i = 0; i < path_space; ++i) {
+        aa += a[i] * a[i];
+        ab += a[i] * b[i];
+        bb += b[i] * b[i];
+    }
+    for (std::size_t i = 0; i < path_space; ++i) {
+        const double upright = aa * b[i] - ab * a[i];
+        off += upright * upright;
+    }
+    return ab < 0 && off <= least_sine * least_sine * aa * aa * bb;
 }
 
 PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after) {
     const double h0 = distance(before, at), h1 = distance(at, after);
-    PathVector first{}, second{};
-    double square = 0, product = 0;
-    for (std::size_t i = 0; i < most_path_axes; ++i) {
-        const double d0 = (at[i] - before[i]) / h0, d1 = (after[i] - at[i]) / h1;
-        first[i] = h0 == 0 ? d1 : h1 == 0 ? d0 : (d0 * h1 + d1 * h0) / (h0 + h1);
-        second[i] = h0 == 0 || h1 == 0 ? 0 : 2 * (d1 - d0) / (h0 + h1);
-        if (i >= path_space) continue;
-        square += first[i] * first[i];
-        product += first[i] * second[i];
-    }
     PathPoint out;
     out.position = at;
-    for (std::size_t i = 0; i < most_path_axes; ++i) {
-        out.tangent[i] = first[i] / std::sqrt(square);
-        out.bend[i] = second[i] / square - first[i] * product / (square * square);
+    const auto parabola = [&](std::size_t i, double l0, double l1) {
+        const double d0 = (at[i] - before[i]) / l0, d1 = (after[i] - at[i]) / l1;
+        out.tangent[i] = l0 == 0 ? d1 : l1 == 0 ? d0 : (d0 * l1 + d1 * l0) / (l0 + l1);
+        out.bend[i] = l0 == 0 || l1 == 0 ? 0 : 2 * (d1 - d0) / (l0 + l1);
+    };
+    for (std::size_t i = 0; i < path_space; ++i) parabola(i, h0, h1);
+    double square = 0, product = 0, bend = 0;
+    for (std::size_t i = 0; i < path_space; ++i) {
+        square += out.tangent[i] * out.tangent[i];
+        product += out.tangent[i] * out.bend[i];
     }
+    for (std::size_t i = 0; i < path_space; ++i) {
+        out.bend[i] -= out.tangent[i] * product / square;
+        out.tangent[i] /= std::sqrt(square);
+        bend += out.bend[i] * out.bend[i];
+    }
+    const auto length_on_circle = [&](double chord) {
+        const double sine = std::min(0.5 * chord * std::sqrt(bend), 1.0);
+        return sine > 0 ? chord * Sleef_cinz_asind1_u10purec(sine) / sine : chord;
+    };
+    for (std::size_t i = path_space; i < most_path_axes; ++i)
+        parabola(i, length_on_circle(h0), length_on_circle(h1));
     return out;
 }
 

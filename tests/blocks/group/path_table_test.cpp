@@ -29,3 +29,25 @@ TEST_CASE("path_table: its outline goes through all points, and lies on the arcs
     CHECK(line.back()[0] == Approx(-8).epsilon(1e-12));
     CHECK(line.back()[1] == Approx(6).epsilon(1e-12));
 }
+
+TEST_CASE("path_table: where a spline turns back it stops, and rotary axes alone move on a line") {
+    PathTablePoint there{.position = {10, 0, 0}, .kind = PathPointKind::spline};
+    PathTablePoint back{.position = {2, 0, 0}, .kind = PathPointKind::spline};
+    PathTablePoint turned{.position = {2, 0, 0}, .kind = PathPointKind::spline, .rotary = {90}};
+    PathRowCurves curves;
+    std::size_t count = 0;
+    REQUIRE(curves_of(there, &back, {}, nullptr, curves, count) == PathFault::none);
+    const PathCurve first = curves[count - 1];
+    CHECK(first.at(first.length).tangent[0] == 1);
+    CHECK(first.at(first.length).bend == PathVector{});
+    REQUIRE(curves_of(back, &turned, first.end, &first, curves, count) == PathFault::none);
+    CHECK(curves[0].at(0).tangent[0] == -1);
+    CHECK(curves[0].at(0).bend == PathVector{});
+    const PathCurve second = curves[count - 1];
+    REQUIRE(curves_of(turned, &there, second.end, &second, curves, count) == PathFault::none);
+    CHECK(count == 1);
+    CHECK(curves[0].length == 90);
+    const PathCurve third = curves[0];
+    REQUIRE(curves_of(there, nullptr, third.end, &third, curves, count) == PathFault::none);
+    CHECK(curves[0].at(0).tangent[0] == 1);
+}

@@ -43,12 +43,53 @@ TEST_CASE("path_curve: arcs through a border run through it, the short way or th
 TEST_CASE("path_curve: an arc about a rounded centre meets both ends") {
     PathCurve arc;
     const PathVector up{0, 0, 1}, down{0, 0, -1};
-    REQUIRE(arc_about({1, 0}, {1e-7, 0}, {0, 1}, down, arc) == PathFault::none);
+    REQUIRE(arc_about({1, 0}, {1e-7, 0}, {0, 1}, down, 0, arc) == PathFault::none);
     CHECK(arc.length == Approx(1.5 * std::numbers::pi).epsilon(1e-6));
     CHECK(arc.at(0).position[0] == Approx(1).epsilon(1e-15));
     CHECK(arc.at(std::nextafter(arc.length, 0)).position[1] == Approx(1).epsilon(1e-14));
-    CHECK(arc_about({1, 0}, {0.1, 0}, {0, 1}, up, arc) == PathFault::no_arc);
-    CHECK(arc_about({1, 0}, {0, 0}, {0, 1}, {0, 1}, arc) == PathFault::no_arc);
+    CHECK(arc_about({1, 0}, {0.1, 0}, {0, 1}, up, 0.01, arc) == PathFault::no_arc);
+    CHECK(arc_about({1, 0}, {0, 0}, {0, 1}, {0, 1}, 0.01, arc) == PathFault::no_arc);
+}
+
+TEST_CASE("path_curve: arcs of points with five decimals begin and end exactly at them") {
+    const auto rounded = [](double x) { return std::round(x * 1e5) / 1e5; };
+    for (const double radius : {0.01, 0.3, 7.0, 1234.5})
+        for (int k = 0; k < 400; ++k) {
+            const double first = 0.1 * k, turn = 0.3 + 5.6 * k / 400;
+            CAPTURE(radius, first, turn);
+            const PathVector centre{rounded(std::sin(k)), rounded(std::cos(k)), 4};
+            const auto on = [&](double angle) {
+                return PathVector{rounded(centre[0] + radius * std::cos(angle)),
+                                  rounded(centre[1] + radius * std::sin(angle)), 4};
+            };
+            const PathVector from = on(first), to = on(first + turn);
+            PathCurve arc;
+            REQUIRE(arc_about(from, centre, to, {0, 0, 1}, 0.01, arc) == PathFault::none);
+            CHECK(arc.end == to);
+            CHECK(arc.length == Approx(radius * turn).margin(1e-4));
+            for (std::size_t i = 0; i < 3; ++i) {
+                CHECK(arc.at(0).position[i] == Approx(from[i]).margin(1e-12));
+                CHECK(arc.at(std::nextafter(arc.length, 0)).position[i] ==
+                      Approx(to[i]).margin(1e-11));
+            }
+            CHECK(arc_of_radius(from, to, {0, 0, rounded(radius)}, 0.01, arc) == PathFault::none);
+            CHECK(arc.end == to);
+        }
+}
+
+TEST_CASE("path_curve: a centre may be off by a thousandth of the radius or by the rounding") {
+    const PathVector up{0, 0, 1};
+    PathCurve arc;
+    CHECK(arc_about({100, 0}, {}, {0, 100.09}, up, 0.01, arc) == PathFault::none);
+    CHECK(arc_about({100, 0}, {}, {0, 100.11}, up, 0.01, arc) == PathFault::no_arc);
+    CHECK(arc_about({1, 0}, {}, {0, 1.009}, up, 0.01, arc) == PathFault::none);
+    CHECK(arc_about({1, 0}, {}, {0, 1.011}, up, 0.01, arc) == PathFault::no_arc);
+    CHECK(arc_about({1e-3, 0}, {}, {0, 1.2e-3}, up, 0.01, arc) == PathFault::no_arc);
+    CHECK(arc_of_radius({100, 0}, {-100, 0}, {0, 0, 99.95}, 0.01, arc) == PathFault::none);
+    CHECK(arc.radius == 100);
+    CHECK(arc_of_radius({100, 0}, {-100, 0}, {0, 0, 99.8}, 0.01, arc) == PathFault::no_arc);
+    CHECK(arc_of_radius({10, 0}, {0, 10}, {5e-3, 0, 10}, 0.01, arc) == PathFault::none);
+    CHECK(arc_of_radius({10, 0}, {0, 10}, {0.1, 0, 10}, 0.01, arc) == PathFault::no_arc);
 }
 
 TEST_CASE("path_curve: an arc about a centre is of any angle up to the whole circle") {
@@ -66,7 +107,7 @@ TEST_CASE("path_curve: an arc about a centre is of any angle up to the whole cir
     for (const double angle : {0.3, 1.5, 3.1, std::numbers::pi, 3.2, 6.0, 2 * std::numbers::pi}) {
         PathCurve arc;
         const bool closed = angle > 6.1;
-        REQUIRE(arc_about(on(0), centre, closed ? on(0) : on(angle), normal, arc) ==
+        REQUIRE(arc_about(on(0), centre, closed ? on(0) : on(angle), normal, 0, arc) ==
                 PathFault::none);
         CHECK(arc.length == Approx(4 * angle).epsilon(1e-12));
         for (std::size_t i = 0; i < 3; ++i) {
@@ -89,7 +130,7 @@ TEST_CASE("path_curve: axes behind the third follow in proportion to the way") {
     CHECK(line.length == 5);
     CHECK(line.at(2.5).position[3] == 15);
     CHECK(line.share(3) == 2);
-    REQUIRE(arc_about({1, 0}, {0, 0}, {-1, 0}, {0, 0, 1}, arc) == PathFault::none);
+    REQUIRE(arc_about({1, 0}, {0, 0}, {-1, 0}, {0, 0, 1}, 0, arc) == PathFault::none);
     let_follow(arc, {1, 0, 0, 0, 10}, {-1, 0, 0, 0, 30});
     CHECK(arc.at(arc.length / 4).position[4] == Approx(15).epsilon(1e-15));
     CHECK(arc.share(4) == Approx(20 / std::numbers::pi).epsilon(1e-15));

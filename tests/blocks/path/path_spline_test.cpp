@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -91,6 +92,54 @@ TEST_CASE("path_spline: derivatives are those of the position, and bounds hold b
             CHECK(bound.tangent <= 1.2 * most[i].tangent + 0.1);
         }
     }
+}
+
+TEST_CASE("path_spline: points on a circle are passed along it") {
+    std::vector<PathVector> points;
+    for (int k = 0; k <= 6; ++k) {
+        const double turn = k * std::numbers::pi / 3;
+        points.push_back({10 * std::cos(turn), 10 * std::sin(turn), 0, 60.0 * k});
+    }
+    for (std::size_t i = 1; i + 2 < points.size(); ++i) {
+        const PathPoint from = waypoint(points[i - 1], points[i], points[i + 1]);
+        const PathPoint to = waypoint(points[i], points[i + 1], points[i + 2]);
+        CHECK(size_in_space(from.bend) == Approx(0.1).epsilon(1e-12));
+        CHECK(from.tangent[3] == Approx(18 / std::numbers::pi).epsilon(1e-12));
+        Parts parts;
+        const std::size_t count = spline_between(from, to, parts);
+        REQUIRE(count > 0);
+        for (std::size_t k = 0; k < count; ++k)
+            for (int n = 0; n <= 8; ++n)
+                CHECK(size_in_space(parts[k].at(parts[k].length * n / 8).position) ==
+                      Approx(10).epsilon(1e-4));
+    }
+}
+
+TEST_CASE("path_spline: the sharpest turns are passed") {
+    for (int turn = 0; turn < 180; ++turn)
+        for (const double length : {1.0, 10.0, 200.0}) {
+            CAPTURE(turn, length);
+            const double angle = turn * std::numbers::pi / 180;
+            for (const PathCurve& c : through(
+                     {{0, 0}, {10, 0}, {10 + length * std::cos(angle), length * std::sin(angle)}}))
+                for (int k = 0; k <= 100; ++k)
+                    CHECK(std::abs(size_in_space(c.at(c.length * k / 100).tangent) - 1) <= 2e-2);
+        }
+}
+
+TEST_CASE("path_spline: between tangents at a right angle, over 50 mm") {
+    PathPoint from, to;
+    from.tangent = {0, 1};
+    to.position = {50};
+    to.tangent = {1, 0};
+    Parts parts;
+    const std::size_t count = spline_between(from, to, parts);
+    REQUIRE(count > 0);
+    for (std::size_t k = 0; k < count; ++k)
+        for (int n = 0; n <= 100; ++n)
+            CHECK(std::abs(size_in_space(parts[k].at(parts[k].length * n / 100).tangent) - 1) <=
+                  2e-4);
+    CHECK(parts[count - 1].end == to.position);
 }
 
 TEST_CASE("path_spline: it is run along within limits, evenly where they allow") {
