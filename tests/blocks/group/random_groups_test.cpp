@@ -27,9 +27,9 @@ class RandomGroup {
         for (const Pin& pin : pins_) places_.push_back(bench_.live(pin.name));
     }
 
-    Events draw(std::uint64_t seed) const {
+    PinChanges draw(std::uint64_t seed) const {
         lineshaft::Random random(seed, "groups");
-        Events events;
+        PinChanges events;
         for (std::int64_t at = 20; at < length;
              at += 1 + static_cast<std::int64_t>(random.below(15)))
             for (std::uint64_t n = 1 + random.below(6); n > 0; --n) {
@@ -42,7 +42,7 @@ class RandomGroup {
     }
 
     /// What goes wrong; empty for nothing.
-    std::string run(const Events& events) {
+    std::string run(const PinChanges& events) {
         bench_.restart();
         for (Last& last : last_) last = {};
         auto next = events.begin();
@@ -60,9 +60,9 @@ class RandomGroup {
                            group.distance);
     }
 
-    std::string text(const Events& events) const {
+    std::string text(const PinChanges& events) const {
         std::string text;
-        for (const Event& e : events)
+        for (const PinChange& e : events)
             text += fmt::format("  {:4} ms  {} = {}\n", e.at, pins_[e.pin].name, e.value);
         return text;
     }
@@ -260,10 +260,10 @@ TEST_CASE("random groups never lead their axes out of their limits") {
     const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_GROUPS", 40));
     RandomGroup group;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
-        const Events events = group.draw(seed);
+        const PinChanges events = group.draw(seed);
         if (group.run(events).empty()) continue;
-        const Events less =
-            shrunk(events, [&](const Events& some) { return !group.run(some).empty(); });
+        const PinChanges less =
+            shrunk(events, [&](const PinChanges& some) { return !group.run(some).empty(); });
         FAIL(fmt::format("seed {}: {}\n{}", seed, group.run(less), group.text(less)));
     }
 }

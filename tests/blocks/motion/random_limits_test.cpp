@@ -31,9 +31,9 @@ class LimitedAxes {
         for (const char* name : {"x", "s"}) watched_.push_back({name, &bench_.axis(name)});
     }
 
-    Events draw(std::uint64_t seed) const {
+    PinChanges draw(std::uint64_t seed) const {
         Random random(seed, "limits");
-        Events events;
+        PinChanges events;
         for (std::int64_t at = 0; at < length; at += 1 + random.below(12))
             for (std::uint64_t n = 1 + random.below(6); n > 0; --n) {
                 const std::size_t pin = random.below(pins_.size());
@@ -45,7 +45,7 @@ class LimitedAxes {
     }
 
     /// What goes wrong; empty for nothing.
-    std::string run(const Events& events) {
+    std::string run(const PinChanges& events) {
         bench_.restart();
         for (Watched& w : watched_) w = {w.name, w.axis};
         stood_ = false;
@@ -69,9 +69,9 @@ class LimitedAxes {
         return text;
     }
 
-    std::string text(const Events& events) const {
+    std::string text(const PinChanges& events) const {
         std::string text;
-        for (const Event& e : events)
+        for (const PinChange& e : events)
             text += fmt::format("  {:4} ms  {} = {}\n", e.at, pins_[e.pin].name, e.value);
         return text;
     }
@@ -355,10 +355,10 @@ TEST_CASE("random programs never lead an axis out of its software limits") {
     const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_LIMITS", 300));
     LimitedAxes axes;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
-        const Events events = axes.draw(seed);
+        const PinChanges events = axes.draw(seed);
         if (axes.run(events).empty()) continue;
-        const Events less =
-            shrunk(events, [&](const Events& some) { return !axes.run(some).empty(); });
+        const PinChanges less =
+            shrunk(events, [&](const PinChanges& some) { return !axes.run(some).empty(); });
         FAIL(fmt::format("seed {}: {}\n{}", seed, axes.run(less), axes.text(less)));
     }
 }

@@ -47,10 +47,10 @@ Sequences::Sequences(const Setup& setup) : setup_(setup), bench_(program()) {
     for (int i = 0; i < setup.axes; ++i) axis_.push_back(&bench_.axis(fmt::format("x{}", i)));
 }
 
-Events Sequences::draw(std::uint64_t seed) const {
+PinChanges Sequences::draw(std::uint64_t seed) const {
     Random random(seed, "commands");
     const auto any = [&](std::size_t n) { return random.next() % n; };
-    Events events;
+    PinChanges events;
     for (std::int64_t at = 0; at < setup_.length;
          at += setup_.pause + static_cast<std::int64_t>(any(12)))
         for (std::size_t n = 1 + any(setup_.at_once); n > 0; --n) {
@@ -64,7 +64,7 @@ Events Sequences::draw(std::uint64_t seed) const {
     return events;
 }
 
-std::string Sequences::run(const Events& events) {
+std::string Sequences::run(const PinChanges& events) {
     bench_.restart();
     for (const std::size_t pin : powers_) set(pin, 1);
     begin();
@@ -85,10 +85,10 @@ std::string Sequences::run(const Events& events) {
     return "it does not end";
 }
 
-Events shrunk(Events events, const std::function<bool(const Events&)>& goes_wrong) {
+PinChanges shrunk(PinChanges events, const std::function<bool(const PinChanges&)>& goes_wrong) {
     for (std::size_t size = events.size() / 2; size > 0; size /= 2)
         for (std::size_t i = 0; i + size <= events.size();) {
-            Events less = events;
+            PinChanges less = events;
             const auto first = less.begin() + static_cast<std::ptrdiff_t>(i);
             less.erase(first, first + static_cast<std::ptrdiff_t>(size));
             if (goes_wrong(less))
@@ -99,9 +99,9 @@ Events shrunk(Events events, const std::function<bool(const Events&)>& goes_wron
     return events;
 }
 
-std::string Sequences::text(const Events& events) const {
+std::string Sequences::text(const PinChanges& events) const {
     std::string text;
-    for (const Event& e : events)
+    for (const PinChange& e : events)
         text += fmt::format("  {:4} ms  {} = {}\n", e.at, pins_[e.pin].name, e.value);
     return text;
 }
@@ -155,10 +155,10 @@ void Sequences::set_all(std::string_view ending, std::string_view beginning, dou
 
 void check_sequences(Sequences& sequences, std::int64_t count, std::string_view what) {
     for (std::int64_t seed = 1; seed <= count; ++seed) {
-        const Events events = sequences.draw(static_cast<std::uint64_t>(seed));
+        const PinChanges events = sequences.draw(static_cast<std::uint64_t>(seed));
         if (sequences.run(events).empty()) continue;
-        const Events less =
-            shrunk(events, [&](const Events& some) { return !sequences.run(some).empty(); });
+        const PinChanges less =
+            shrunk(events, [&](const PinChanges& some) { return !sequences.run(some).empty(); });
         FAIL(fmt::format("{}, seed {}: {}\n{}", what, seed, sequences.run(less),
                          sequences.text(less)));
     }

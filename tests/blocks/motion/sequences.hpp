@@ -12,15 +12,15 @@
 namespace lineshaft::test {
 
 /// A pin is set before an instant.
-struct Event {
+struct PinChange {
     std::int64_t at = 0;  ///< [ms]
     std::size_t pin = 0;
     double value = 0;
 };
-using Events = std::vector<Event>;
+using PinChanges = std::vector<PinChange>;
 
 /// What is left of events that go wrong when none can be left out any more.
-Events shrunk(Events events, const std::function<bool(const Events&)>& goes_wrong);
+PinChanges shrunk(PinChanges events, const std::function<bool(const PinChanges&)>& goes_wrong);
 
 /// A command block of each axis, and the pins that are set at random.
 struct CommandDraw {
@@ -45,10 +45,10 @@ class Sequences {
     explicit Sequences(const Setup& setup);
     virtual ~Sequences() = default;
 
-    Events draw(std::uint64_t seed) const;
+    PinChanges draw(std::uint64_t seed) const;
     /// What goes wrong; empty for nothing.
-    std::string run(const Events& events);
-    std::string text(const Events& events) const;
+    std::string run(const PinChanges& events);
+    std::string text(const PinChanges& events) const;
 
   protected:
     virtual void begin() {}
