@@ -243,7 +243,7 @@ def check_paths(lineshaft):
         yield "--path --every leaves the limits"
     for text, message in (("a\n1\n", "1: error: the column 'a' is not known"),
                           ("position1\n1\nx\n", "3: error: 'x' in column position1 is not a number"),
-                          ("position1,curve\n0,\n1,round\n", "3: error: the curve 'round' is not line, arc or spline")):
+                          ("position1,curve\n0,\n1,round\n", "3: error: the curve 'round' is not line, arc, spline or cubic")):
         code, out, err = run(lineshaft, "--path", *limits, text=text)
         if code != 2 or not err.startswith("stdin:" + message):
             yield f"--path: exit code {code}, said {err!r} instead of {message!r}"

@@ -56,6 +56,12 @@ PathFault curve_of(const GroupRequest& request, const PathVector& from, double r
     return line_to(from, to, out, direct ? most_path_axes : path_space);
 }
 
+PathBlend blend_of(BufferMode mode) {
+    if (mode == BufferMode::blending_previous) return PathBlend::previous;
+    if (mode == BufferMode::blending_next) return PathBlend::next;
+    return mode == BufferMode::blending_high ? PathBlend::high : PathBlend::low;
+}
+
 /// Rotary axes alone, or axes each for itself: the path has no limits then, only its axes.
 bool is_free(const GroupRequest& request, const PathCurve& curve) {
     using enum GroupCommand;
@@ -225,7 +231,9 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     if (path.finished()) return {};
     PathJoint joint;
     if (!is_within && request.mode <= BufferMode::buffered) joint.velocity = 0;
-    const PathCurve& before = ring[(path.count - 1) % ring.size()].curve;
+    const PathPiece& last = ring[(path.count - 1) % ring.size()];
+    const PathCurve& before = last.curve;
+    joint.blend = is_within ? PathBlend::low : blend_of(request.mode);
     const bool lines = before.kind == PathCurveKind::line && curve.kind == PathCurveKind::line;
     if (!before.is_line_or_arc() || !curve.is_line_or_arc() || joint.velocity == 0) return joint;
     const double parameter = request.corner_parameter;
@@ -233,7 +241,8 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     if (request.corner == CornerMode::corner_deviation)
         joint.distance = distance_within(parameter, before, curve);
     if (request.corner == CornerMode::start_velocity && lines)
-        joint.distance = corner_distance_at(parameter, before, curve, limits);
+        joint.distance = corner_distance_at(parameter, before, curve,
+                                            limits_between(last.limits, limits, joint.blend));
     return joint;
 }
 

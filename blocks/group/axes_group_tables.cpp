@@ -6,9 +6,8 @@ namespace lineshaft {
 
 namespace {
 
-/// The row behind, if there is one.
-const PathTablePoint* behind(const PathTable::Points& points, std::size_t i) {
-    return i + 1 < static_cast<std::size_t>(points.size) ? &points.rows[i + 1] : nullptr;
+PathRows rows_of(const PathTable::Points& points, const PathVector& start) {
+    return {{points.rows.data(), static_cast<std::size_t>(points.size)}, start};
 }
 
 }  // namespace
@@ -30,11 +29,11 @@ MotionError AxesGroup::look_through(const Context& context, const GroupJob& job)
     PathRowCurves curves;
     PathCurve last = last_curve(job);
     const PathCurve* before = goes_on(job) ? &last : nullptr;
-    PathVector from = job.frame.inverse().place(end_point);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(points.size); ++i) {
+    const PathRows rows = rows_of(points, job.start);
+    PathVector from = job.start;
+    for (std::size_t i = 0; i < rows.rows.size(); ++i) {
         std::size_t count = 0;
-        const PathFault fault =
-            curves_of(points.rows[i], behind(points, i), from, before, curves, count);
+        const PathFault fault = curves_of(rows, i, from, before, curves, count);
         if (const MotionError why = motion_error_of(fault); why != MotionError::none) return why;
         if (fault != PathFault::none) continue;
         for (std::size_t k = 0; k < count; ++k)
@@ -52,17 +51,18 @@ MotionError AxesGroup::lay_table(const Context& context, GroupJob& job) {
     const PathTable::Points& points = context.instance<PathTable>(job.request.table).table;
     if (job.rows == 0) {
         job.first_piece = static_cast<std::int64_t>(path.count);
+        job.start = job.frame.inverse().place(end_point);
         if (const MotionError why = look_through(context, job); why != MotionError::none)
             return why;
     }
     PathRowCurves curves;
     for (; job.rows < points.size; ++job.rows) {
         const auto i = static_cast<std::size_t>(job.rows);
-        const bool is_spline = points.rows[i].kind == PathPointKind::spline;
+        const bool is_spline = points.rows[i].kind >= PathPointKind::spline;
         if (!has_room(is_spline ? most_spline_parts : most_transition_parts)) break;
         std::size_t count = 0;
         const PathCurve last = last_curve(job);
-        if (curves_of(points.rows[i], behind(points, i), job.frame.inverse().place(end_point),
+        if (curves_of(rows_of(points, job.start), i, job.frame.inverse().place(end_point),
                       goes_on(job) ? &last : nullptr, curves, count) != PathFault::none)
             continue;
         for (std::size_t k = 0; k < count; ++k)

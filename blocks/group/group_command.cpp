@@ -90,10 +90,11 @@ std::vector<Field> blending() {
                   "what becomes of the command at work")
                 .one_of(buffer_mode_names),
             input("TransitionMode", &B::pins, &GroupRequest::corner, "",
-                  "how a corner between lines is rounded where moves are blended")
+                  "how the joint of two lines or arcs is rounded where moves are blended; of "
+                  "mcTMStartVelocity two lines")
                 .one_of(corner_mode_names),
             input("TransitionParameter", &B::pins, &GroupRequest::corner_parameter, "{AxesGroup}",
-                  "distance from the vertex, or greatest deviation; of mcTMStartVelocity the "
+                  "distance from the joint, or greatest deviation; of mcTMStartVelocity the "
                   "velocity there, as a number of the same unit a second")
                 .at_least(0)};
 }

@@ -59,6 +59,7 @@ struct GroupJob : JobState {
     PathFrame frame;  ///< of a move: where its coordinates stand, since it was taken up
     std::int64_t first_piece = 0, end_piece = 0;
     std::int64_t rows = 0;
+    PathVector start{};        ///< of a table: where it begins, in the coordinates of its points
     std::int64_t is_laid = 0;  ///< all of it is in the path
 
     constexpr GroupJob() { whom = JobFor::group; }

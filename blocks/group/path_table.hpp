@@ -18,9 +18,9 @@ namespace lineshaft {
 inline constexpr std::size_t most_path_points = 1024;
 
 /// How a point of a path_table is reached from the one before.
-enum class PathPointKind : std::int64_t { line, arc, spline };
+enum class PathPointKind : std::int64_t { line, arc, spline, cubic };
 
-inline constexpr std::string_view path_point_kind_names[] = {"line", "arc", "spline"};
+inline constexpr std::string_view path_point_kind_names[] = {"line", "arc", "spline", "cubic"};
 
 /// A row: the position of the first three axes, how it is reached, of an arc a point that it
 /// passes, and the position of the rotary axes.
@@ -36,11 +36,21 @@ struct PathTablePoint {
 
 using PathRowCurves = std::array<PathCurve, most_spline_parts>;
 
-/// The curves of a row from the point before: one, or the parts of a spline. That begins as the
-/// curve `before` ends, if there is one, and passes its own point as the line or arc of the `next`
-/// row begins, else along the circle through the points before and behind. Where the way turns back
-/// it ends and begins along its own chord: a stop.
-PathFault curves_of(const PathTablePoint& row, const PathTablePoint* next, const PathVector& from,
+/// Rows of a table, and the point from which the first of them begins.
+struct PathRows {
+    std::span<const PathTablePoint> rows;
+    PathVector start{};
+
+    /// Where row k begins, and where the last one ends.
+    PathVector knot(std::size_t k) const { return k == 0 ? start : rows[k - 1].target(); }
+};
+
+/// The curves of row k from the point `from`: one, or the parts of a spline. A row of a cubic
+/// spline is a part of the one through all such rows that follow each other. One of degree five
+/// begins as the curve `before` ends, if there is one, and passes its own point as the line, arc or
+/// cubic spline of the next row begins, else along the circle through the points before and behind.
+/// Where the way turns back a spline ends and begins along its own chord: a stop.
+PathFault curves_of(const PathRows& table, std::size_t k, const PathVector& from,
                     const PathCurve* before, PathRowCurves& out, std::size_t& count);
 
 /// The points of a path for MC_MovePath, in the program or in a CSV file.

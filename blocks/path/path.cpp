@@ -232,16 +232,15 @@ struct Round {
 };
 
 bool find_round(const PathCurve& before, const PathCurve& after, double far,
-                const PathLimits& limits, const PathLimit& most, Round& out) {
+                const PathLimits& limits, Round& out) {
     const bool lines = before.kind == PathCurveKind::line && after.kind == PathCurveKind::line;
     if (lines) {
         out.count = 1;
         out.curves[0] = corner_between(before, after, far);
-        out.boxes[0] = box_of_corner(before, after, out.curves[0].length, limits, most);
+        out.boxes[0] = box_of_corner(before, after, out.curves[0].length, limits);
     } else {
         out.count = spline_between(before.at(before.length - far), after.at(far), out.curves);
-        for (std::size_t i = 0; i < out.count; ++i)
-            out.boxes[i] = least_of(box_of(out.curves[i], limits), most);
+        for (std::size_t i = 0; i < out.count; ++i) out.boxes[i] = box_of(out.curves[i], limits);
     }
     for (std::size_t i = 0; i < out.count; ++i)
         if (!is_good(out.boxes[i])) return false;
@@ -251,16 +250,16 @@ bool find_round(const PathCurve& before, const PathCurve& after, double far,
 /// Joins a line or an arc to the last one by a corner or a transition. False, and nothing has
 /// changed, where that cannot be.
 bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const PathLimit& box,
-                  const PathLimits& limits, double distance) {
+                  const PathLimits& limits, const PathJoint& joint) {
     if (path.finished() || path.count - path.first + 2 > ring.size()) return false;
     PathPiece& last = piece_at(ring, path.count - 1);
     PathStretch& cut = piece_at(ring, path.stretches - 1).stretch;
     const PathCurve curve = last.curve;
     if (!curve.is_line_or_arc() || !next.is_line_or_arc() || is_smooth(curve, next)) return false;
-    const double far = std::min(distance, room_of_corner(path, ring, next));
+    const double far = std::min(joint.distance, room_of_corner(path, ring, next));
+    const PathLimits both = limits_between(last.limits, limits, joint.blend);
     Round round;
-    if (!(far > 0) ||
-        !find_round(curve, next, far, limits, least_of(cut.box, limits.path), round) ||
+    if (!(far > 0) || !find_round(curve, next, far, both, round) ||
         path.count - path.first + 1 + round.count > ring.size())
         return false;
     next.cut_start(far);
@@ -271,7 +270,6 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     }
     const Path before = path;
     constexpr double any = std::numeric_limits<double>::infinity();
-    const PathLimits both = least_of(last.limits, limits);
     path.total = cut.end = last.end();
     for (std::size_t i = 0; i < round.count; ++i)
         append_piece(path, ring, round.curves[i], both, round.boxes[i], any);
@@ -319,7 +317,7 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const 
     if (count > first) {
         const PathCurve& before = piece_at(ring, count - 1).curve;
         if (!is_joined(before, curve)) return PathFault::not_joined;
-        if (joint.distance > 0 && append_round(*this, ring, curve, box, limits, joint.distance))
+        if (joint.distance > 0 && append_round(*this, ring, curve, box, limits, joint))
             return PathFault::none;
         if (is_smooth(before, curve)) velocity = joint.velocity;
     }

@@ -14,6 +14,7 @@ namespace lineshaft {
 struct PathJoint {
     double velocity = std::numeric_limits<double>::infinity();  ///< at most; 0: a stop [u/s]
     double distance = 0;  ///< > 0: two lines are joined by a corner this far from the vertex [u]
+    PathBlend blend = PathBlend::low;
 };
 
 /// The motion along the path at one instant, and that of the axes.

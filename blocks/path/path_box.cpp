@@ -125,8 +125,8 @@ bool is_good(const PathLimit& limit) {
 }
 
 PathLimit box_of_corner(const PathCurve& before, const PathCurve& after, double length,
-                        const PathLimits& limits, const PathLimit& most) {
-    return box_within(bounds_of_corner(before, after, length, limits), 1, most);
+                        const PathLimits& limits) {
+    return box_within(bounds_of_corner(before, after, length, limits), 1, limits.path);
 }
 
 PathLimit box_of(const PathCurve& curve, const PathLimits& limits) {
@@ -149,9 +149,16 @@ PathLimit least_of(const PathLimit& a, const PathLimit& b) {
             std::min(a.jerk, b.jerk)};
 }
 
-PathLimits least_of(const PathLimits& a, const PathLimits& b) {
-    PathLimits out{least_of(a.path, b.path), {}};
-    for (std::size_t i = 0; i < most_path_axes; ++i) out.axes[i] = least_of(a.axes[i], b.axes[i]);
+PathLimits limits_between(const PathLimits& before, const PathLimits& after, PathBlend blend) {
+    PathLimits out{least_of(before.path, after.path), {}};
+    if (blend == PathBlend::previous) out.path = before.path;
+    if (blend == PathBlend::next) out.path = after.path;
+    if (blend == PathBlend::high)
+        out.path = {std::max(before.path.velocity, after.path.velocity),
+                    std::max(before.path.acceleration, after.path.acceleration),
+                    std::max(before.path.jerk, after.path.jerk)};
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        out.axes[i] = least_of(before.axes[i], after.axes[i]);
     return out;
 }
 

@@ -100,16 +100,26 @@ double unevenness(const PathCurve& c) {
     return most;
 }
 
-PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
+/// With x, x' and x'' by t at both ends.
+PathCurve quintic(const PathPoint& from, const PathPoint& to) {
     PathCurve c;
     c.kind = PathCurveKind::spline;
-    const double square = scale * scale;
     for (std::size_t i = 0; i < most_path_axes; ++i)
         set(c, i,
-            hermite(from.position[i], scale * from.tangent[i], square * from.bend[i],
-                    to.position[i], scale * to.tangent[i], square * to.bend[i]));
+            hermite(from.position[i], from.tangent[i], from.bend[i], to.position[i], to.tangent[i],
+                    to.bend[i]));
     c.end = to.position;
     return c;
+}
+
+PathPoint scaled(PathPoint point, double scale) {
+    for (double& x : point.tangent) x *= scale;
+    for (double& x : point.bend) x *= scale * scale;
+    return point;
+}
+
+PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
+    return quintic(scaled(from, scale), scaled(to, scale));
 }
 
 /// From t = `at` on, of the width `width`.
@@ -190,7 +200,12 @@ std::size_t spline_between(const PathPoint& from, const PathPoint& to,
     double scale = distance(from.position, to.position);
     if (!(scale > 0) || !std::isfinite(scale)) return 0;
     for (int step = 0; step < 2; ++step) scale = length_of(quintic(from, to, scale));
-    const PathCurve whole = quintic(from, to, scale);
+    return quintic_between(scaled(from, scale), scaled(to, scale), out);
+}
+
+std::size_t quintic_between(const PathPoint& from, const PathPoint& to,
+                            std::span<PathCurve, most_spline_parts> out) {
+    const PathCurve whole = quintic(from, to);
     for (const double most_uneven : {1e-4, 4e-4, 2e-3, 1e-2})
         if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
     return 0;

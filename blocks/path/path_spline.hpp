@@ -20,6 +20,10 @@ inline constexpr std::size_t most_transition_parts = 16;
 std::size_t spline_between(const PathPoint& from, const PathPoint& to,
                            std::span<PathCurve, most_spline_parts> out);
 
+/// The same by the curve's own parameter, from 0 to 1: tangent and bend are the derivatives by it.
+std::size_t quintic_between(const PathPoint& from, const PathPoint& to,
+                            std::span<PathCurve, most_spline_parts> out);
+
 /// Tangent and curvature at a point between two others, those of the circle through all three in
 /// the first three axes. At the first of them, `before` is `at` and they are those of the line
 /// there; likewise at the last one. Not where the way turns back.

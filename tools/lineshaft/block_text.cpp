@@ -50,6 +50,10 @@ std::string names_text(const Field& field) {
     return text;
 }
 
+std::string names_line(const Field& field) {
+    return fmt::format("  {:18} {:10} {}\n", "", "", names_text(field));
+}
+
 /// What must be known to set it: the default, the limits.
 std::string notes(const Field& field, const Fresh& fresh) {
     const bool settable = field.direction != Direction::output &&
@@ -168,15 +172,17 @@ std::string block_text(const BlockType& type) {
         for (const Field& f : type.fields) {
             if (f.direction != direction) continue;
             lines += line(f, notes(f, fresh));
-            if (f.type == Type::enumeration)
-                lines += fmt::format("  {:18} {:10} {}\n", "", "", names_text(f));
+            if (f.type == Type::enumeration) lines += names_line(f);
         }
         if (!lines.empty()) text += fmt::format("\n{}s\n{}", name_of(direction), lines);
     }
     for (const TableField& table : type.tables) {
         text +=
             fmt::format("\nlist {}, up to {} rows: {}\n", table.name, table.capacity, table.doc);
-        for (const Field& column : table.columns) text += line(column, describe_limits(column, ""));
+        for (const Field& column : table.columns) {
+            text += line(column, describe_limits(column, ""));
+            if (!column.names.empty()) text += names_line(column);
+        }
     }
     if (const std::string example = block_example(type); !example.empty())
         text += fmt::format("\nexample\n  {}\n", example);
@@ -214,6 +220,7 @@ Json block_json(const BlockType& type) {
         auto columns = Json::array();
         for (const Field& c : t.columns) {
             columns.push_back({{"name", c.name}, {"unit", c.unit}, {"doc", c.doc}});
+            if (!c.names.empty()) columns.back()["values"] = c.names;
             add_limits(columns.back(), c);
         }
         out["tables"].push_back(

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "blocks/path/path_cubic.hpp"
 #include "tools/lineshaft/plan_cells.hpp"
 
 namespace lineshaft {
@@ -71,7 +72,9 @@ const std::string_view path_help =
     "\n\nposition1,position2[,...,position6][,curve][,border1..border3][,path], with --path: "
     "points\n"
     "of a path in the space of the axes, the first one its start. curve is line, arc (through the\n"
-    "border) or spline; rows of one number in the column path are one path. A row each:\n"
+    "border), spline (of degree five) or cubic; rows of one number in the column path are one "
+    "path.\n"
+    "A row each:\n"
     "  path,ok,error,points,pieces,length,duration\n"
     "or with --every one each so many seconds, and where the path ends:\n"
     "  path,time,distance,velocity,acceleration,jerk,position1..position6";
@@ -134,10 +137,10 @@ bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) 
     if (!name_) {
         begin(rows);
         name_ = name;
-        from_ = point.target();
+        from_ = start_ = point.target();
     } else {
-        if (waiting_) lay(*waiting_, &point, rows);
-        waiting_ = point;
+        waiting_.push_back(point);
+        if (next_ + cubic_reach < waiting_.size()) lay(rows);
     }
     ++points_;
     return true;
@@ -173,7 +176,7 @@ std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point
         if (column == curve_column) {
             const auto found = std::ranges::find(path_point_kind_names, *cell);
             if (!cell->empty() && found == std::end(path_point_kind_names))
-                return fmt::format("the curve '{}' is not line, arc or spline", *cell);
+                return fmt::format("the curve '{}' is not line, arc, spline or cubic", *cell);
             if (!cell->empty())
                 point.kind = static_cast<PathPointKind>(found - std::begin(path_point_kind_names));
         } else if (column < first_border || !cell->empty()) {
@@ -193,21 +196,29 @@ std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point
 
 void PathPlanner::begin(std::string&) {
     path_ = {};
-    waiting_.reset();
+    waiting_.clear();
+    next_ = 0;
     fault_ = PathFault::none;
     points_ = samples_ = 0;
     duration_ = 0;
 }
 
-void PathPlanner::lay(const PathTablePoint& row, const PathTablePoint* next, std::string& rows) {
+/// The next row that waits; those that count for none behind it are forgotten.
+void PathPlanner::lay(std::string& rows) {
+    const std::size_t k = next_++;
     if (fault_ != PathFault::none) return;
     PathRowCurves curves;
     std::size_t count = 0;
     const PathCurve* const before = path_.count > 0 ? &last_ : nullptr;
-    fault_ = curves_of(row, next, from_, before, curves, count);
+    fault_ = curves_of({waiting_, start_}, k, from_, before, curves, count);
     if (fault_ == PathFault::no_length) fault_ = PathFault::none, count = 0;
-    for (std::size_t k = 0; k < count && fault_ == PathFault::none; ++k) append(curves[k], rows);
-    from_ = row.target();
+    for (std::size_t n = 0; n < count && fault_ == PathFault::none; ++n) append(curves[n], rows);
+    from_ = waiting_[k].target();
+    if (next_ < 4 * cubic_reach) return;
+    const std::size_t forgotten = next_ - cubic_reach - 1;
+    start_ = waiting_[forgotten - 1].target();
+    waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(forgotten));
+    next_ -= forgotten;
 }
 
 void PathPlanner::append(const PathCurve& curve, std::string& rows) {
@@ -246,7 +257,7 @@ void PathPlanner::run(std::string& rows, bool to_end) {
 
 void PathPlanner::end(std::string& rows) {
     if (!name_) return;
-    if (waiting_) lay(*waiting_, nullptr, rows);
+    while (next_ < waiting_.size()) lay(rows);
     run(rows, true);
     if (path_.lost) fault_ = PathFault::not_finite;
     const bool ok = fault_ == PathFault::none;

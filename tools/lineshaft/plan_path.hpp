@@ -40,7 +40,7 @@ class PathPlanner {
     std::string read_header(std::string_view text);
     std::string read_point(std::string_view text, PathTablePoint& point, double& path);
     void begin(std::string& rows);
-    void lay(const PathTablePoint& row, const PathTablePoint* next, std::string& rows);
+    void lay(std::string& rows);
     void append(const PathCurve& curve, std::string& rows);
     void run(std::string& rows, bool to_end);
     void end(std::string& rows);
@@ -55,9 +55,10 @@ class PathPlanner {
 
     std::vector<PathPiece> ring_;
     Path path_;
-    std::optional<double> name_;  ///< of the path under way
-    std::optional<PathTablePoint> waiting_;
-    PathVector from_{};
+    std::optional<double> name_;           ///< of the path under way
+    std::vector<PathTablePoint> waiting_;  ///< those to come, and those that count for them
+    std::size_t next_ = 0;                 ///< the first of those to come
+    PathVector start_{}, from_{};
     PathCurve last_;
     PathFault fault_ = PathFault::none;
     std::size_t points_ = 0, samples_ = 0;

@@ -295,6 +295,43 @@ TEST_CASE("group: a table is run along, longer than the path looks ahead") {
     CHECK(bench.number("y.position") == 5);
 }
 
+TEST_CASE("group: a corner is passed with the limits of the move that its mode of blending names") {
+    struct Case {
+        const char* mode;
+        double first, second, most;
+    };
+    for (const Case& c : {Case{"mcBlendingLow", 20, 45, 20},
+                          {"mcBlendingLow", 45, 20, 20},
+                          {"mcBlendingPrevious", 20, 45, 20},
+                          {"mcBlendingPrevious", 45, 20, 45},
+                          {"mcBlendingNext", 20, 45, 45},
+                          {"mcBlendingNext", 45, 20, 20},
+                          {"mcBlendingHigh", 20, 45, 45},
+                          {"mcBlendingHigh", 45, 20, 45}}) {
+        CAPTURE(c.mode, c.first, c.second);
+        MotionBench bench(table_with(fmt::format(R"(
+  first: {{type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 40 mm, Position4: 350 deg, Velocity: {} mm/s}}
+  second: {{type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 80 mm, Position2: 5 mm, Position4: 350 deg, Velocity: {} mm/s, BufferMode: {}, TransitionMode: mcTMCornerDistance, TransitionParameter: 10 mm}}
+)",
+                                                 c.first, c.second, c.mode)));
+        bench.step(20);
+        bench.set("first.Execute", true);
+        bench.set("second.Execute", true);
+        double before = 0, within = 0, behind = 0;
+        while (!bench.is("second.Done")) {
+            bench.step();
+            const double way = bench.number("group.distance"), v = bench.number("group.velocity");
+            double& most = way <= 30 ? before : way < 50 ? within : behind;
+            most = std::max(most, v);
+            REQUIRE(bench.now() < 20'000);
+        }
+        CHECK(before == Approx(c.first).epsilon(1e-9));
+        CHECK(within == Approx(c.most).epsilon(0.02));
+        CHECK(within <= c.most * (1 + 1e-9));
+        CHECK(behind == Approx(c.second).epsilon(1e-9));
+    }
+}
+
 TEST_CASE("group: a table of splines is passed without a stop, from a line into an arc") {
     MotionBench bench(table_with(R"(
   way: {type: path_table, task: servo, points: [[10 mm, 0 mm, 0 mm, line, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [25 mm, 8 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 340 deg, 0 deg, 0 deg], [40 mm, -6 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 345 deg, 0 deg, 0 deg], [60 mm, 0 mm, 0 mm, spline, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [65 mm, 5 mm, 0 mm, arc, 62 mm, 1 mm, 0 mm, 350 deg, 0 deg, 0 deg]]}
@@ -320,6 +357,28 @@ TEST_CASE("group: a table of splines is passed without a stop, from a line into 
     CHECK(bench.number("x.position") == 65);
     CHECK(bench.number("y.position") == 5);
     CHECK(bench.number("turn.position") == 350);
+}
+
+TEST_CASE("group: a table of a cubic spline is passed without a stop") {
+    MotionBench bench(table_with(R"(
+  way: {type: path_table, task: servo, points: [[10 mm, 5 mm, 0 mm, cubic, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [20 mm, -3 mm, 0 mm, cubic, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg], [30 mm, 4 mm, 0 mm, cubic, 0 mm, 0 mm, 0 mm, 350 deg, 0 deg, 0 deg]]}
+  path: {type: MC_MovePath, task: servo, AxesGroup: group, PathData: way}
+)"));
+    bench.step(20);
+    bench.set("path.Execute", true);
+    double slowest = 50, nearest = 50;
+    while (!bench.is("path.Done")) {
+        bench.step();
+        REQUIRE_FALSE(bench.is("path.Error"));
+        const double x = bench.number("x.position"), y = bench.number("y.position");
+        if (x > 5 && x < 25) slowest = std::min(slowest, bench.number("group.velocity"));
+        nearest = std::min(nearest, std::hypot(x - 20, y + 3));
+        REQUIRE(bench.now() < 20'000);
+    }
+    CHECK(slowest > 5);
+    CHECK(nearest < 0.05);
+    CHECK(bench.number("x.position") == 30);
+    CHECK(bench.number("y.position") == 4);
 }
 
 TEST_CASE("group: a line runs into an arc within the deviation asked for, without a stop") {

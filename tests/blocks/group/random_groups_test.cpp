@@ -154,7 +154,7 @@ blocks:
   group: {{type: axes_group, task: servo, default_velocity: 60 mm/s, default_acceleration: 700 mm/s^2, default_jerk: 9000 mm/s^3}}
   y: {{type: axis, task: servo, default_velocity: {} mm/s, default_acceleration: {} mm/s^2, default_deceleration: {} mm/s^2, default_jerk: {} mm/s^3}}
   turn: {{type: axis, task: servo, unit: deg, modulo: true, period: 50 deg, default_velocity: {} deg/s, default_acceleration: {} deg/s^2, default_deceleration: {} deg/s^2, default_jerk: {} deg/s^3}}
-  points: {{type: path_table, task: main, points: [[5 mm, 5 mm], [10 mm, 5 mm], [10 mm, 15 mm], [11 mm, 30 mm], [-4 mm, 2 mm]]}}
+  points: {{type: path_table, task: main, points: [[5 mm, 5 mm], [10 mm, 5 mm], [10 mm, 15 mm], [11 mm, 30 mm, 0 mm, spline], [2 mm, 25 mm, 0 mm, spline], [0 mm, 18 mm, 0 mm, cubic], [6 mm, 12 mm, 0 mm, cubic], [-4 mm, 2 mm, 0 mm, cubic], [-4 mm, 8 mm]]}}
   add_y: {{type: MC_AddAxisToGroup, task: servo, AxesGroup: group, Axis: y, IdentInGroup: 2, Execute: true}}
   add_turn: {{type: MC_AddAxisToGroup, task: servo, AxesGroup: group, Axis: turn, IdentInGroup: 4, Execute: add_y.Done}}
   last: {{type: MC_MoveLinearAbsolute, task: main, AxesGroup: group, Position1: 7 mm, Position2: -3 mm, Position4: 11 deg}}

@@ -11,7 +11,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "blocks/path/path_spline.hpp"
+#include "blocks/path/path_cubic.hpp"
 #include "blocks/profile/seven_segment.hpp"
 
 using namespace lineshaft;
@@ -68,6 +68,22 @@ void append_spline(RandomPath& out, Random& random, const PathVector& from, cons
     }
 }
 
+/// Through two to six random points.
+void append_cubic(RandomPath& out, Random& random, const PathVector& from, std::size_t axes,
+                  double size, const PathLimits& limits) {
+    std::vector<PathVector> points{from};
+    for (auto more = 1 + static_cast<int>(random.between(0, 4.999)); more > 0; --more)
+        points.push_back(random_point(random, axes, size));
+    std::array<PathCurve, most_spline_parts> parts;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        const std::size_t count = cubic_between(knot_of(points, k), knot_of(points, k + 1), parts);
+        if (count == 0) return;
+        out.curves.insert(out.curves.end(), parts.begin(),
+                          parts.begin() + static_cast<std::ptrdiff_t>(count));
+        out.limits.resize(out.curves.size(), limits);
+    }
+}
+
 /// Lines, arcs and splines, some lines cut in two, so that there are smooth joints.
 RandomPath random_path(Random& random, std::size_t most) {
     RandomPath out;
@@ -83,8 +99,12 @@ RandomPath random_path(Random& random, std::size_t most) {
     while (static_cast<double>(out.curves.size()) < wanted && out.curves.size() < most) {
         const PathVector to = random_point(random, axes, size);
         PathCurve curve;
-        if (random.share() < 0.2) {
-            append_spline(out, random, from, random_point(random, axes, size), limits);
+        const double kind = random.share();
+        if (kind < 0.2) {
+            if (kind < 0.1)
+                append_spline(out, random, from, random_point(random, axes, size), limits);
+            else
+                append_cubic(out, random, from, axes, size, limits);
             if (!out.curves.empty()) from = out.curves.back().end;
             while (out.joints.size() < out.curves.size()) out.joints.push_back({});
             continue;
