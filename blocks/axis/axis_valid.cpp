@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "blocks/axis/cam_table.hpp"
+#include "blocks/axis/written_cam.hpp"
 
 namespace lineshaft {
 
@@ -65,7 +66,7 @@ bool is_valid(const SyncMotion& sync, bool is_followed, const KeptState& machine
     if (!is_followed) return true;
     return sync.coupling.master.axis >= 0 &&
            (sync.law != SyncMotion::Law::cammed ||
-            is_cam(CamTableId::of(sync.coupling.cam).table, machine));
+            !WrittenCam::find(machine.context, CamTableId::of(sync.coupling.cam)).points.empty());
 }
 
 bool is_valid(const Axis::Running& running, const KeptState& machine) {
@@ -165,7 +166,7 @@ bool is_valid(const Coupling& coupling, const KeptState& machine) {
            is_one_of(coupling.combine, CombineMode::subtract) &&
            is_one_of(coupling.transition, TransitionMode::step) &&
            is_one_of(coupling.sync_mode, SyncMode::slow_down) &&
-           is_one_of(coupling.start_mode, StartMode::ramp_in);
+           is_one_of(coupling.start_mode, StartMode::direct);
 }
 
 bool is_valid(const Request& request, const KeptState& machine) {
