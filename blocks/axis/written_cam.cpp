@@ -10,7 +10,13 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view action_names[] = {"rest", "write", "complete", "evaluate"};
+constexpr std::string_view action_names[] = {"rest", "write", "complete", "evaluate", "measure"};
+
+std::span<const CamPoint> first_of(const CamTable::Points& points) {
+    const auto most = static_cast<std::int64_t>(most_cam_points);
+    return {points.rows.data(),
+            static_cast<std::size_t>(std::clamp<std::int64_t>(points.size, 0, most))};
+}
 
 std::span<CamPoint> first_of(CamTable::Points& points) {
     const auto most = static_cast<std::int64_t>(most_cam_points);
@@ -34,6 +40,7 @@ std::span<const Field> WrittenCam::fields() {
         input("Acceleration", &W::acceleration, "", "of the slave per master, twice"),
         input("Curve", &W::point, &CamPoint::curve, "", "to the next point")
             .one_of(cam_curve_names),
+        input("Of", &W::other, "", "CamTableID of the cam that is looked at; 0: its own"),
         input("Periodic", &W::periodic, "", "the cam begins anew at its end"),
         input("MasterAbsolute", &W::master_absolute, "", "as of MC_CamTableSelect"),
         input("SlaveAbsolute", &W::slave_absolute, "", "as of MC_CamTableSelect"),
@@ -44,6 +51,8 @@ std::span<const Field> WrittenCam::fields() {
         output("SlaveAt", &W::y, "", "position of the slave at Master"),
         output("VelocityAt", &W::slope, "", "slave per master there"),
         output("AccelerationAt", &W::bend, "", "of the slave per master, twice, there"),
+        output("First", &W::first, "", "position of the master at the beginning"),
+        output("Last", &W::last, "", "position of the master at the end"),
         output("Least", &W::least, "", "position of the slave on the whole cam"),
         output("Greatest", &W::greatest, "", "position of the slave on the whole cam"),
         output("GreatestVelocity", &W::greatest_slope, "", "size of slave per master"),
@@ -65,7 +74,9 @@ MotionError WrittenCam::act(const Context& context) {
         case CamAction::complete:
             return complete(context);
         case CamAction::evaluate:
-            return evaluate();
+            return evaluate(context);
+        case CamAction::measure:
+            return measure(context);
         case CamAction::rest:
             break;
     }
@@ -88,13 +99,6 @@ MotionError WrittenCam::complete(const Context& context) {
     draft.size = row;
     if (complete_cam(first_of(draft), periodic).fault != CamFault::none) return MotionError::no_cam;
     cam = draft;
-    const Cam whole{first_of(cam), periodic};
-    const Range values = whole.values();
-    const CamExtremes most = whole.extremes();
-    least = values.least;
-    greatest = values.greatest;
-    greatest_slope = most.slope;
-    greatest_bend = most.bend;
     mark = context.place_of(*this);
     id = first_id + CamTableId{mark / 8 - 1, periodic, master_absolute, slave_absolute}.number();
     return MotionError::none;
@@ -130,17 +134,37 @@ Cam WrittenCam::followed(const Context& context, const CamTableId& id) {
     const std::int64_t place = lineshaft::place_of(id);
     if (place < 0) return context.instance<CamTable>(id.table).cam(id.periodic);
     WrittenCam& found = context.at<WrittenCam>(place);
-    const bool is_there = found.mark == place && found.id == id.number();
+    const bool is_there = found.mark == place;
     return is_there ? Cam{first_of(found.cam), id.periodic} : Cam{};
 }
 
-MotionError WrittenCam::evaluate() {
-    if (cam.size == 0) return MotionError::no_cam;
+Cam WrittenCam::looked_at(const Context& context) const {
+    if (other != 0) return find(context, CamTableId::of(other));
+    return cam.size == 0 ? Cam{} : Cam{first_of(cam), periodic};
+}
+
+MotionError WrittenCam::evaluate(const Context& context) {
+    const Cam seen = looked_at(context);
+    if (seen.points.empty()) return MotionError::no_cam;
     if (!std::isfinite(point.x)) return MotionError::not_finite;
-    const CurvePoint found = Cam{first_of(cam), periodic}.at(point.x);
+    const CurvePoint found = seen.at(point.x);
     y = found.y;
     slope = found.slope;
     bend = found.bend;
+    return MotionError::none;
+}
+
+MotionError WrittenCam::measure(const Context& context) {
+    const Cam seen = looked_at(context);
+    if (seen.points.empty()) return MotionError::no_cam;
+    const Range values = seen.values();
+    const CamExtremes most = seen.extremes();
+    first = seen.begin();
+    last = seen.points.back().x;
+    least = values.least;
+    greatest = values.greatest;
+    greatest_slope = most.slope;
+    greatest_bend = most.bend;
     return MotionError::none;
 }
 

@@ -19,7 +19,8 @@ enum class CamAction : std::int64_t {
     rest,
     write,     ///< a point is put at Row
     complete,  ///< the points up to Row are the cam from now on
-    evaluate,  ///< the cam is looked at, at Master
+    evaluate,  ///< a cam is looked at, at Master
+    measure,   ///< a cam is looked at as a whole
 };
 
 /// A cam that a program makes while it runs: point by point, then as a whole. What is followed
@@ -31,6 +32,7 @@ struct WrittenCam {
 
     CamAction action = CamAction::rest;
     std::int64_t row = 0, given = 0;  ///< `given` of the derivatives: 0, 1 or 2
+    std::int64_t other = 0;           ///< CamTableID of the cam that is looked at; 0: its own
     CamPoint point;
     double velocity = 0, acceleration = 0;  ///< of the point
     bool periodic = false, master_absolute = true, slave_absolute = true;
@@ -40,6 +42,7 @@ struct WrittenCam {
     std::int64_t id = 0;
     double y = 0, slope = 0, bend = 0;
     double least = 0, greatest = 0, greatest_slope = 0, greatest_bend = 0;
+    double first = 0, last = 0;  ///< of the master
 
     std::int64_t mark = 0;  ///< the place that `id` says: who follows it looks whether it is there
     CamTable::Points cam, draft;
@@ -59,7 +62,9 @@ struct WrittenCam {
     MotionError act(const Context& context);
     MotionError write();
     MotionError complete(const Context& context);
-    MotionError evaluate();
+    Cam looked_at(const Context& context) const;
+    MotionError evaluate(const Context& context);
+    MotionError measure(const Context& context);
 };
 
 bool is_valid(const WrittenCam& cam, const KeptState& machine);
