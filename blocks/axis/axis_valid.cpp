@@ -198,11 +198,12 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
 }
 
 void mend(Axis& axis, const KeptState& machine) {
-    if (!lists_are_valid(axis, machine)) axis.inbox = axis.queue = {};
+    axis.wake_up(machine.now);
 }
 
 bool is_valid(const ServoDrive& drive, const KeptState& machine) {
-    return are_booleans(drive.checked, drive.in_simulation, drive.first_scan, drive.last_home) &&
+    return are_booleans(drive.checked, drive.in_simulation, drive.first_scan, drive.last_home,
+                        drive.has_velocity) &&
            drive.newest >= 0 && drive.newest <= ServoDrive::longest_delay &&
            is_one_of(drive.contradiction, ServoError::no_time_constant) &&
            machine.is_moment(drive.last_time);
