@@ -4,6 +4,7 @@
 #include "blocks/axis/axis_valid.hpp"
 #include "blocks/axis/cam_table.hpp"
 #include "blocks/axis/servo_drive.hpp"
+#include "blocks/axis/written_cam.hpp"
 #include "blocks/circle/circle_fit.hpp"
 #include "blocks/circle/path_circle.hpp"
 #include "blocks/circle/path_move.hpp"
@@ -64,6 +65,7 @@ Catalog make_catalog() {
     blocks.add<GearOut>();
     blocks.add<GearInPos>();
     blocks.add<CamTable>();
+    blocks.add<WrittenCam>();
     blocks.add<CamTableSelect>();
     blocks.add<CamIn>();
     blocks.add<CamOut>();

@@ -146,6 +146,26 @@ void Axis::start(const Scan& now) {
     base.position = start_position;
 }
 
+void Axis::wake_up(std::int64_t now) {
+    const double place = total().position;
+    inbox = queue = {};
+    shown = {};
+    active = added = phased = overriding = {};
+    factors = {};
+    sync = {};
+    extra = {};
+    safe = {};
+    offset = lasting = added_goal = 0;
+    withdrawn = added_paused = added_counted = 0;
+    powered = enables_positive = enables_negative = 1;
+    hold({.position = place}, {now});
+    goal = origin = place;
+    error = false;
+    error_id = MotionError::none;
+    state = AxisState::standstill;
+    velocity = acceleration = jerk = actual_velocity = 0;
+}
+
 void Axis::shift(std::int64_t by) {
     for (Moment* moment : {&velocity_motion.start, &point_motion.start, &added_motion.start,
                            &profile_motion.start, &sync.start, &sync.looked, &sync.shifting.start})

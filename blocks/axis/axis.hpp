@@ -153,6 +153,8 @@ struct Axis {
     std::optional<Misfit> misfit(const IsConstant& is_constant) const;
     void scan(const Scan& now, const Context& context);
     void shift(std::int64_t by);
+    /// After the power was gone: where it was, at rest, with nothing to do.
+    void wake_up(std::int64_t now);
     std::string why(const Context&, const NameOf&) const {
         return text_of(error_id, shortage, axis_unit_names[static_cast<std::size_t>(unit)]);
     }
@@ -281,6 +283,8 @@ struct Axis {
     MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
     MotionError place_cam(const Context& context, const MotionState& leader,
                           const MotionState& from);
+    void place_direct_cam(const Context& context, const MotionState& leader,
+                          const MotionState& from, const Cam& table);
     Cam cam(const Context& context) const;
     void begin_phasing(const Context& context, Job& job);
     void look_at_shift(const Context& context);

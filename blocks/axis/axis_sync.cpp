@@ -6,6 +6,7 @@
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/axis/cam_table.hpp"
+#include "blocks/axis/written_cam.hpp"
 
 namespace lineshaft {
 
@@ -203,6 +204,7 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     sync.stage = Stage::in_sync;
     sync.looked = at;
     sync.led = leader;
+    if (is_cam && c.start_mode == StartMode::direct) return MotionError::none;
     if (is_cam && c.start_mode == StartMode::ramp_in) return ramp_in(from, leader, table, at);
     if (sync.is_on_law(from, leader, table)) return MotionError::none;
     const double left = sync.distance(leader);
@@ -254,27 +256,45 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
                             const MotionState& from) {
     const Coupling& c = sync.coupling;
     const CamTableId id = CamTableId::of(c.cam);
-    if (!is_instance<CamTable>(context, id.table)) return MotionError::no_cam;
-    const Cam table = cam(context);
+    const Cam table = WrittenCam::find(context, id);
     if (table.points.empty()) return MotionError::no_cam;
     const double relocated_by = context.seen_instance<Axis>(c.master.axis).relocated;
     sync.cam_origin =
         c.master_offset + c.master_scaling * (id.master_absolute ? relocated_by : -leader.position);
     sync.cam_rise = c.slave_offset;
-    if (!id.slave_absolute || c.start_mode == StartMode::relative)
+    if (c.start_mode == StartMode::direct)
+        place_direct_cam(context, leader, from, table);
+    else if (!id.slave_absolute || c.start_mode == StartMode::relative)
         sync.cam_rise += from.position - sync.law_at(leader.position, table).y;
     sync.meet(leader, (c.master_sync - sync.cam_origin) / c.master_scaling,
               table.periodic ? table.length() / std::abs(c.master_scaling) : 0);
     const double x = c.master_scaling * leader.position + sync.cam_origin;
     sync.last_periods = table.periods(x);
     sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
+    if (!table.periodic && c.stays != 0) sync.last_periods = -static_cast<double>(sync.ends_at);
     return MotionError::none;
+}
+
+/// Its origin is where the slave is, or the axis' own. It begins with its first period, and of a
+/// modulo axis with the turn that the axis is in.
+void Axis::place_direct_cam(const Context& context, const MotionState& leader,
+                            const MotionState& from, const Cam& table) {
+    const Coupling& c = sync.coupling;
+    const Axis& leading = context.seen_instance<Axis>(c.master.axis);
+    if (leading.modulo && CamTableId::of(c.cam).master_absolute) {
+        const double at = leader.position + leading.relocated;
+        sync.cam_origin += c.master_scaling * (within_period(at, leading.period) - at);
+    }
+    const double x = c.master_scaling * leader.position + sync.cam_origin;
+    if (!CamTableId::of(c.cam).slave_absolute) sync.cam_rise += from.position;
+    if (table.periodic) sync.cam_rise -= c.slave_scaling * table.periods(x) * table.lift();
+    const double y = sync.law_at(leader.position, table).y;
+    if (modulo) sync.cam_rise += period * std::round((from.position - y) / period);
 }
 
 Cam Axis::cam(const Context& context) const {
     if (sync.law != Law::cammed) return {};
-    const CamTableId id = CamTableId::of(sync.coupling.cam);
-    return context.instance<CamTable>(id.table).cam(id.periodic);
+    return WrittenCam::followed(context, CamTableId::of(sync.coupling.cam));
 }
 
 void Axis::begin_phasing(const Context& context, Job& job) {
@@ -394,6 +414,8 @@ void Axis::reach(const Context& context) {
 void Axis::follow_law(const Context& context) {
     const MotionState leader = master(context);
     const Cam table = cam(context);
+    if (sync.law == Law::cammed && table.points.empty())
+        return fail_before(context, MotionError::no_cam);
     if (sync.stage == Stage::waiting && !leaves(context, leader, table)) return;
     if (sync.stage == Stage::approaching) follow_approach(context, leader, table);
     if (sync.stage == Stage::in_transition &&
@@ -481,6 +503,14 @@ void Axis::look_for_end(const Context& context, const MotionState& leader, const
     const double slack = sum_rounding * (std::abs(x) + std::abs(sync.cam_origin));
     CurvePoint behind = table.last();
     behind.y = table.points.back().y;
+    if (sync.coupling.stays != 0) {
+        const double side = x >= last - slack ? 1 : x <= first + slack ? -1 : 0;
+        const bool leaves = side != 0 && side != sync.last_periods;
+        sync.last_periods = side;
+        if (!leaves) return;
+        return end_cam(context, leader, side > 0 ? last : first,
+                       side > 0 ? behind : table.at(first));
+    }
     if (sync.ends_at >= 0 && x >= last - slack) return end_cam(context, leader, last, behind);
     if (sync.ends_at <= 0 && x <= first + slack) end_cam(context, leader, first, table.at(first));
 }
@@ -507,7 +537,7 @@ void Axis::end_cam(const Context& context, const MotionState& leader, double x,
             return look(context, scan_time);
         base = now;
     }
-    if (cam(context).periodic) return;
+    if (cam(context).periodic || sync.coupling.stays != 0) return;
     sync.finished = 1;
     const bool stands = std::abs(last.velocity) <= sum_rounding * sync.dynamics.velocity;
     if (stands)

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "blocks/axis/cam_table.hpp"
+#include "blocks/axis/written_cam.hpp"
 
 namespace lineshaft {
 
@@ -65,7 +66,7 @@ bool is_valid(const SyncMotion& sync, bool is_followed, const KeptState& machine
     if (!is_followed) return true;
     return sync.coupling.master.axis >= 0 &&
            (sync.law != SyncMotion::Law::cammed ||
-            is_cam(CamTableId::of(sync.coupling.cam).table, machine));
+            !WrittenCam::find(machine.context, CamTableId::of(sync.coupling.cam)).points.empty());
 }
 
 bool is_valid(const Axis::Running& running, const KeptState& machine) {
@@ -165,7 +166,7 @@ bool is_valid(const Coupling& coupling, const KeptState& machine) {
            is_one_of(coupling.combine, CombineMode::subtract) &&
            is_one_of(coupling.transition, TransitionMode::step) &&
            is_one_of(coupling.sync_mode, SyncMode::slow_down) &&
-           is_one_of(coupling.start_mode, StartMode::ramp_in);
+           is_one_of(coupling.start_mode, StartMode::direct);
 }
 
 bool is_valid(const Request& request, const KeptState& machine) {
@@ -197,11 +198,12 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
 }
 
 void mend(Axis& axis, const KeptState& machine) {
-    if (!lists_are_valid(axis, machine)) axis.inbox = axis.queue = {};
+    axis.wake_up(machine.now);
 }
 
 bool is_valid(const ServoDrive& drive, const KeptState& machine) {
-    return are_booleans(drive.checked, drive.in_simulation, drive.first_scan, drive.last_home) &&
+    return are_booleans(drive.checked, drive.in_simulation, drive.first_scan, drive.last_home,
+                        drive.has_velocity) &&
            drive.newest >= 0 && drive.newest <= ServoDrive::longest_delay &&
            is_one_of(drive.contradiction, ServoError::no_time_constant) &&
            machine.is_moment(drive.last_time);

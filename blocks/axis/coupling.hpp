@@ -23,9 +23,11 @@ enum class StartMode : std::int64_t {
     absolute,
     relative,  ///< from where the slave is
     ramp_in,   ///< absolute; the slave gets onto the cam at once, within its limits
+    direct,    ///< the slave is on the cam at once: it jumps where it was elsewhere
 };
 
-inline constexpr std::string_view start_mode_names[] = {"mcAbsolute", "mcRelative", "mcRampIn"};
+inline constexpr std::string_view start_mode_names[] = {"mcAbsolute", "mcRelative", "mcRampIn",
+                                                        "mcDirect"};
 
 /// One master with its gear.
 struct MasterLink {
@@ -49,6 +51,7 @@ struct Coupling {
     double start_distance = 0;  ///< of the master before that, where the slave begins [m], >= 0
     std::int64_t cam = 0;       ///< CamTableID
     StartMode start_mode = StartMode::absolute;
+    std::int64_t stays = 0;  ///< not 0: behind the ends of a cam that is not periodic, too
     double master_offset = 0, master_scaling = 1;  ///< cam's x = scaling * master + offset
     double slave_offset = 0, slave_scaling = 1;    ///< slave = scaling * cam(x) + offset
 

@@ -72,7 +72,9 @@ std::span<const Field> ServoDrive::fields() {
         input("home", &D::home, "", "rising edge: position := home_position"),
         input("home_position", &D::home_position, "{unit}", "actual position at home"),
         output("position", &D::position, "{unit}", "actual position, read from the encoder"),
-        output("velocity", &D::velocity, "{unit}/s", "of the motor"),
+        output("velocity", &D::velocity, "{unit}/s",
+               "of the motor; without `kv`: set_velocity, or where that is always 0 what the "
+               "positions make"),
         output("motor_position", &D::motor_position, "{unit}", "where the motor is"),
         output("table_position", &D::table_position, "{unit}", "where the table is"),
         output("following_error", &D::following_error, "{unit}",
@@ -89,7 +91,10 @@ void ServoDrive::scan(const Scan& now) {
                                                                      : ServoError::not_finite;
     const bool homing = rising_edge(home, last_home);
     in_simulation = in_simulation && !homing;
-    if (error_id == ServoError::none) error_id = in_simulation ? copy() : follow(now.time, homing);
+    has_velocity = has_velocity || set_velocity != 0;
+    const double elapsed = now.index == 0 ? 0 : seconds(now.time - last_time);
+    if (error_id == ServoError::none)
+        error_id = in_simulation ? copy(elapsed) : follow(now.time, homing);
     last_time = now.time;
     error = error_id != ServoError::none;
 }
@@ -111,9 +116,11 @@ void ServoDrive::check() {
 }
 
 /// What `follow` comes to with everything off, in less than half the time.
-ServoError ServoDrive::copy() {
+ServoError ServoDrive::copy(double elapsed) {
+    const double made = elapsed > 0 ? (set_position - motor_position) / elapsed : 0;
+    if (!has_velocity && !std::isfinite(made)) return ServoError::not_finite;
     position = motor_position = table_position = set_position;
-    velocity = set_velocity;
+    velocity = has_velocity ? set_velocity : made;
     return ServoError::none;
 }
 
@@ -140,9 +147,8 @@ ServoDrive::SetPoint ServoDrive::transported() {
 
 /// What no double can hold is not set.
 ServoError ServoDrive::move(const SetPoint& wanted, double elapsed, bool homing) {
-    const VelocityLoop::State next = kv > 0
-                                         ? loop.advance(motor, demand, elapsed)
-                                         : VelocityLoop::State{wanted.position, wanted.velocity, 0};
+    const VelocityLoop::State next =
+        kv > 0 ? loop.advance(motor, demand, elapsed) : at_set_point(wanted, elapsed);
     const Transmission::State next_gear = transmission.advance(gear, next.position, elapsed);
     const double table = transmission.table(next_gear);
     const double seen = read_encoder(encoder == Encoder::motor ? next.position : table);
@@ -166,6 +172,12 @@ ServoError ServoDrive::move(const SetPoint& wanted, double elapsed, bool homing)
     position = reading;
     following_error = distance;
     return ServoError::none;
+}
+
+/// Of a motor without a position loop.
+VelocityLoop::State ServoDrive::at_set_point(const SetPoint& wanted, double elapsed) const {
+    const double made = elapsed > 0 ? (wanted.position - motor.position) / elapsed : 0;
+    return {wanted.position, has_velocity ? wanted.velocity : made, 0};
 }
 
 double ServoDrive::read_encoder(double true_position) {

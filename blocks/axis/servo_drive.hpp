@@ -76,6 +76,7 @@ struct ServoDrive {
     std::array<SetPoint, longest_delay + 1> transport{};  ///< a ring
     std::int64_t newest = 0;
     bool checked = false, in_simulation = false, first_scan = true, last_home = false;
+    bool has_velocity = false;                    ///< set_velocity has not always been 0
     double home_offset = 0;                       ///< position - what the encoder sees [u]
     ServoError contradiction = ServoError::none;  ///< of the parameters
     std::int64_t last_time = 0;
@@ -94,11 +95,12 @@ struct ServoDrive {
 
   private:
     void check();
-    ServoError copy();
+    ServoError copy(double elapsed);
     ServoError follow(std::int64_t time, bool homing);
     void start();
     SetPoint transported();
     ServoError move(const SetPoint& wanted, double elapsed, bool homing);
+    VelocityLoop::State at_set_point(const SetPoint& wanted, double elapsed) const;
     double read_encoder(double true_position);
 };
 

@@ -36,10 +36,11 @@ bool is_valid(const CommandBlock& command, const KeptState& machine) {
            (!machine.is_live || is_where_it_says(command.job, machine));
 }
 
-void mend(CommandBlock& command, const KeptState& machine) {
-    if (is_where_it_says(command.job, machine)) return;
+void mend(CommandBlock& command, const KeptState&) {
     command.job.in = JobPlace::no_list;
     command.job.previous = command.job.next = nowhere;
+    if (is_end(command.job.progress)) return;
+    command.started = command.busy = command.active = command.reached = false;
 }
 
 bool is_valid(const Home& home, const KeptState& machine) {

@@ -16,7 +16,7 @@ namespace lineshaft {
 
 bool is_valid(const CommandState& command);
 bool is_valid(const CommandBlock& command, const KeptState& machine);
-/// Leaves a list that it is not in: its axis was not retained.
+/// Ends where it was: its axis has nothing to do after a restart.
 void mend(CommandBlock& command, const KeptState& machine);
 bool is_valid(const Home& home, const KeptState& machine);
 bool is_valid(const CamTableSelect& select, const KeptState& machine);

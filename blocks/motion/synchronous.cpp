@@ -139,6 +139,8 @@ std::span<const Field> CamIn::fields() {
          coupled("SlaveScaling", &C::slave_scaling, "", "of the slave"), start_distance(),
          coupled("MasterSyncPosition", &C::master_sync, "{Master}", "on the cam, where it is met"),
          coupled("StartMode", &C::start_mode, "", "of the slave").one_of(start_mode_names),
+         input("StaysCoupled", &CamIn::stays_coupled, "",
+               "of a cam that is not periodic: the slave stands beyond its ends, and comes back"),
          source(), of_slave(pin::velocity()), of_slave(pin::acceleration()),
          of_slave(pin::deceleration()), of_slave(pin::jerk()), pin::buffer_mode()},
         pin::reached("InSync", "the slave is on the cam"),
@@ -149,6 +151,7 @@ std::span<const Field> CamIn::fields() {
 }
 
 void CamIn::scan(const Scan& now, const Context& context) {
+    pins.coupling.stays = stays_coupled ? 1 : 0;
     run(now, context);
     const Progress at = progress_of(job, context);
     start_sync = busy && at >= Progress::approaching;

@@ -42,10 +42,13 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
     const std::vector<std::size_t> begins = lay_out(unit, kept);
     unit_ = reinterpret_cast<std::byte*>(memory_.data());
     for (const std::size_t begin : begins) places_.push_back(unit_ + begin);
+    add_types(unit, kept);
     context_ = {.instances = places_.data(),
                 .seen = places_.data(),
+                .types = types_.data(),
                 .memory = unit_,
                 .task = 0,
+                .blocks = static_cast<int>(types_.size()),
                 .published = &never};
     const std::size_t globals = made.checked.globals.size();
     for (std::size_t i = 0; i < globals; ++i)
@@ -64,6 +67,21 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
         kept[i].to->construct(places_[globals + i]);
         objects_.emplace_back(kept[i].to, places_[globals + i]);
     }
+}
+
+/// As a machine has them, for blocks that look what a number names. The unit is the last one.
+void Bench::add_types(const Type& unit, std::span<const KeptReference> kept) {
+    const auto& globals = made_.checked.globals;
+    sizes_.resize(globals.size() + 1);
+    for (std::size_t i = 0; i < globals.size(); ++i) {
+        const Type& type = *globals[i].type;
+        sizes_[i].size = 8 * made_.generated.images.at(&type).size();
+        types_.push_back(type.kind == Type::Kind::standard ? type.standard : &sizes_[i]);
+    }
+    for (const KeptReference& reference : kept) types_.push_back(reference.to);
+    sizes_.back().size = 8 * made_.generated.images.at(&unit).size();
+    types_.push_back(&sizes_.back());
+    places_.push_back(unit_);
 }
 
 /// Where each global and each block of `kept` begins.

@@ -42,6 +42,7 @@ class Bench : Witness {
     std::optional<Mark> cut();
 
   private:
+    void add_types(const Type& unit, std::span<const KeptReference> kept);
     std::vector<std::size_t> lay_out(const Type& unit, std::span<const KeptReference> kept);
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
     const std::byte* place(std::uint64_t address);
@@ -59,6 +60,8 @@ class Bench : Witness {
     std::unordered_map<std::uint64_t, const Assertion*> assertions_;  ///< by their instruction
     std::vector<std::uint64_t> memory_;  ///< of the unit, the data blocks and objects, what is kept
     std::vector<std::byte*> places_;
+    std::vector<BlockType> sizes_;         ///< of what is no block of the catalogue: its size alone
+    std::vector<const BlockType*> types_;  ///< of all that has a place
     std::byte* unit_ = nullptr;
     Context context_;
     std::vector<std::pair<const BlockType*, std::byte*>> objects_;

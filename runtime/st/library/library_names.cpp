@@ -112,12 +112,16 @@ NameSet declared_names(const Tree& tree) {
     return names;
 }
 
-/// Empty where it is none, or has a base, whose parts stand elsewhere.
+/// A block, or a structure, with its parts. Empty where it is none, or has a base, whose parts
+/// stand elsewhere.
 std::string_view block_in(const LibraryFile& file, std::string_view name) {
-    const std::size_t begin = file.text.find(fmt::format("FUNCTION_BLOCK {}\n", name));
-    if (begin == file.text.npos) return {};
-    const std::string_view unit = file.text.substr(begin);
-    return unit.substr(0, unit.find("END_FUNCTION_BLOCK"));
+    const auto unit_in = [&](const std::string& head, std::string_view end) {
+        const std::size_t begin = file.text.find(head);
+        const std::string_view unit = file.text.substr(std::min(begin, file.text.size()));
+        return unit.substr(0, unit.find(end));
+    };
+    const auto block = unit_in(fmt::format("FUNCTION_BLOCK {}\n", name), "END_FUNCTION_BLOCK");
+    return block.empty() ? unit_in(fmt::format("TYPE {} : STRUCT\n", name), "END_STRUCT") : block;
 }
 
 NameSet declared_namespaces(const Tree& tree) {
@@ -270,13 +274,13 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
     const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name).value_or(0); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });
-    if (index_.of_catalog.contains(name) && most > pins_of_catalog(name)) return files.front();
+    const bool is_catalogs = index_.of_catalog.contains(name) && most <= pins_of_catalog(name);
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
     if (of_twincat_.contains(name))
         for (const LibraryFile* file : files)
             if (file->library.starts_with("Tc2_")) return file;
-    return index_.of_catalog.contains(name) ? nullptr : files.front();
+    return is_catalogs ? nullptr : files.front();
 }
 
 void LibraryNames::take(const LibraryFile& file) {

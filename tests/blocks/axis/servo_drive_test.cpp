@@ -292,3 +292,21 @@ TEST_CASE("a drive holds while its set-point is no number, and goes on from ther
     clock.scan(drive);
     CHECK(drive.position == Approx(1.05));
 }
+
+TEST_CASE("a drive without a position loop tells the velocity that its positions make") {
+    ServoDrive plain, delayed;
+    delayed.delay = 2;
+    Clock clock;
+    for (int i = 0; i < 10; ++i) {
+        plain.set_position = delayed.set_position = 0.02 * i;
+        const Scan now{clock.time(), clock.interval, clock.index++};
+        plain.scan(now);
+        delayed.scan(now);
+    }
+    CHECK(plain.velocity == Approx(20));
+    CHECK(delayed.velocity == Approx(20));
+    CHECK(delayed.position == Approx(0.14));
+    plain.set_velocity = 7;
+    plain.scan({clock.time(), clock.interval, clock.index});
+    CHECK(plain.velocity == 7);
+}

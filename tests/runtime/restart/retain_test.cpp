@@ -214,3 +214,34 @@ TEST_CASE("a damaged file alone, and one of an earlier layout, is refused", "[re
     CHECK(refused(with_check(text)).find("of an earlier lineshaft") != std::string::npos);
     CHECK(refused("{}").find("this is not a file of retained values") != std::string::npos);
 }
+
+TEST_CASE("a retained axis stands where it was when the power went", "[retain]") {
+    const Folder folder;
+    write(folder / "axis.yaml", R"(
+lineshaft: 1
+tasks: {main: {every: 1 ms}}
+blocks:
+  x: {type: axis, task: main, start_position: 5 mm}
+  go: {type: MC_MoveVelocity, task: main, Axis: x, Execute: inputs.go, Velocity: 10 mm/s}
+inputs: {go: true}
+retain: [x, go]
+run: {for: 1 s}
+)");
+    double place = 5;
+    for (const char* go : {"true", "false", "true"}) {
+        Diagnostics out;
+        LoadOptions options;
+        options.settings = {{"inputs.go", go}};
+        auto loaded = load_program(folder / "axis.yaml", options, standard_blocks(), out);
+        INFO(out.render());
+        REQUIRE(loaded);
+        run_on(*loaded, folder);
+        const double at = std::get<double>(value_of(*loaded, "x.position"));
+        if (place == 5)
+            CHECK(at > 14);
+        else
+            CHECK(at == Approx(place).margin(0.02));
+        CHECK(value_of(*loaded, "go.Busy") == Value(place == 5));
+        place = at;
+    }
+}
