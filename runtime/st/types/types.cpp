@@ -65,6 +65,10 @@ bool has_call(const Expression& e) {
     return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
 }
 
+bool Called::may_recur() const {
+    return is_call && !through_reference && (routine->owner || routine->is_function());
+}
+
 std::vector<Variable*> all_variables(const Routine& block) {
     std::vector<Variable*> all;
     if (block.base) all = all_variables(*block.base);
