@@ -134,7 +134,8 @@ void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
             c.warn(code::calls_itself, last->place, text, "be sure that it ends soon");
         else
             c.fail(code::contains_itself, last->place, text,
-                   "what is in it has no end: use a reference");
+                   last->is_call ? "its instance has one body: write a method, which may do so"
+                                 : "what is in it has no end: use a reference");
     }
 }
 

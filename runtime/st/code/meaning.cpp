@@ -31,6 +31,14 @@ auto parts_of(const std::byte* reference) {
 constexpr std::size_t record_end = 3;
 constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
+/// `16#FF`
+int base_of(std::string_view number) {
+    return number.starts_with("2#")    ? 2
+           : number.starts_with("8#")  ? 8
+           : number.starts_with("16#") ? 16
+                                       : 10;
+}
+
 }  // namespace
 
 std::string_view text_at(const std::byte* place) {
@@ -118,8 +126,15 @@ T number_of_text(const std::byte* from) {
     if (is_negative || text.starts_with('+')) text.remove_prefix(1);
     if (text.find_first_of(".0123456789") != 0) return T{};
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc()) return T{};
+    std::from_chars_result read;
+    if constexpr (std::is_integral_v<T>) {
+        const int base = base_of(text);
+        if (base != 10) text.remove_prefix(text.find('#') + 1);
+        read = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    } else {
+        read = std::from_chars(text.data(), text.data() + text.size(), value);
+    }
+    if (read.ec != std::errc()) return T{};
     return is_negative ? -value : value;
 }
 

@@ -224,7 +224,8 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what);
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign = false);
 
-/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none.
+/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
+/// whole number may be `16#FF`.
 template <class T>
 T number_of_text(const std::byte* from);
 

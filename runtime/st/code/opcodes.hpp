@@ -160,6 +160,7 @@
     OP(floor, real, "wr--", put(a, std::floor(R(b))))                                                \
     OP(ceil, real, "wr--", put(a, std::ceil(R(b))))                                                  \
     OP(truncate, real, "wr--", put(a, std::trunc(R(b))))                                             \
+    OP(round_away, real, "wr--", put(a, std::round(R(b))))                                           \
     OP(round, real, "wr--", put(a, std::nearbyint(R(b))))                                            \
     OP(narrow, real, "wr--", put(a, narrow(R(b))))                                                   \
     OP(real_from_signed, real, "wr--", put(a, double{static_cast<float>(I(b))}))                     \

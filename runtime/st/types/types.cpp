@@ -23,11 +23,10 @@ std::uint64_t bytes_of(const Type& type) {
         case Type::Kind::boolean:
             return 1;
         case Type::Kind::time:
-            return type.counts_ns ? 8 : 4;
         case Type::Kind::date:
         case Type::Kind::clock:
         case Type::Kind::moment:
-            return type.name.starts_with('L') ? 8 : 4;
+            return type.counts_ns ? 8 : 4;
         case Type::Kind::text:
             return type.length + 1;
         case Type::Kind::enumeration:

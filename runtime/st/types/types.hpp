@@ -59,7 +59,7 @@ struct Type {
     bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;        ///< STRUCT without a TYPE: any of its members is equal
-    bool counts_ns = false;         ///< LTIME, of which a real number is in ns, not ms
+    bool counts_ns = false;         ///< LTIME, LDATE, LTOD, LDT: as numbers they are in ns
     const Type* base = nullptr;  ///< of a subrange, of named values; of an enumeration with numbers
     const Type* element = nullptr;         ///< of an array; what a reference is to, or null
     Referring referring = Referring::ref;  ///< of a reference
