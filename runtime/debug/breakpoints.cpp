@@ -163,13 +163,14 @@ void Breakpoints::arrange() {
             ++count_;
         }
     }
-    // Callees stand before their callers; what a call finds by an instance may be any method.
+    // Callees stand before their callers, but in a ring; what a call finds by an instance may be
+    // any method.
     reached_ = has_one;
     std::map<const st::Routine*, std::size_t> numbers;
     for (std::size_t i = 0; i < code.routines.size(); ++i) {
         const st::Routine& routine = *made_->checked.order[i];
         numbers.emplace(&routine, i);
-        if (made_->checked.dispatches) reached_[i] = count_ > 0;
+        if (made_->checked.dispatches || routine.ring != 0) reached_[i] = count_ > 0;
         for (const st::Called& called : routine.calls)
             if (const auto it = numbers.find(called.routine);
                 it != numbers.end() && reached_[it->second])

@@ -1679,6 +1679,7 @@ class SourceMaker {
     }
 
     void declare_globals() {
+        line("VAR_GLOBAL depth_of_calls : INT; END_VAR");
         if (below(4) == 3) {
             auto made = variables("g", 1 + below(3), true);
             section("VAR_GLOBAL", made, true);
@@ -1729,13 +1730,42 @@ class SourceMaker {
     }
 
     /// The body is written first, for it makes the counters.
-    std::string written_body(std::size_t count) {
+    std::string written_body(std::size_t count, const Callable* recurring = nullptr) {
         std::string before;
         std::swap(out_, before);
         counters_.clear();
         statements(count);
+        if (recurring) {
+            call_itself(*recurring);
+            statements(1 + below(2));
+        }
         std::swap(out_, before);
         return before;
+    }
+
+    /// No deeper than `depth_of_calls`. A method gives on what it was given as VAR_IN_OUT.
+    void call_itself(const Callable& callable) {
+        ++indent_;
+        line("IF depth_of_calls < 4 THEN");
+        ++indent_;
+        line("depth_of_calls := depth_of_calls + 1;");
+        if (callable.is_method) {
+            std::string given;
+            for (const Parameter& p : callable.parameters) {
+                if (p.section == Section::output || !can_be_given(*p.type)) continue;
+                given += fmt::format(
+                    "{}{} := {}", given.empty() ? "" : ", ", p.name,
+                    p.section == Section::in_out ? p.name : expression(*p.type, 2).text);
+            }
+            line(fmt::format("{0} := {1}{0}({2});", callable.name, below(2) == 1 ? "THIS." : "",
+                             given));
+        } else {
+            call(callable, callable.name);
+        }
+        line("depth_of_calls := depth_of_calls - 1;");
+        --indent_;
+        line("END_IF;");
+        --indent_;
     }
 
     Parameters parameters(Callable& callable, bool pure) {
@@ -1784,7 +1814,9 @@ class SourceMaker {
         enter(given.inputs, given.in_outs, given.outputs, locals);
         if (callable.result) scope_.push_back({callable.name, callable.result});
         has_eno_ = true;
-        const std::string body = written_body(1 + below(callable.is_method ? 2 : 5));
+        const bool recurs = !callable.pure && callable.result && below(3) == 2;
+        const std::string body =
+            written_body(1 + below(callable.is_method ? 2 : 5), recurs ? &callable : nullptr);
         write_head(callable, keyword);
         declare(given, with_initial);
         section("VAR", locals, true);
@@ -2161,7 +2193,7 @@ class SourceMaker {
         has_eno_ = false;
         std::string declared;
         const std::string bound = references(declared);
-        const std::string body = bound + written_body(below(20));
+        const std::string body = bound + "depth_of_calls := 0;\n" + written_body(below(20));
         line("PROGRAM Main");
         section("VAR_INPUT", inputs, false);
         section("VAR CONSTANT", constants_, false);

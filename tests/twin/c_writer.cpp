@@ -1105,7 +1105,7 @@ class CWriter {
 
     std::string call_routine(const Expression& e) {
         const Routine& routine = *e.routine;
-        std::string given;
+        std::string given, own;
         const auto add = [&](const std::string& text) {
             given += (given.empty() ? "" : ", ") + text;
         };
@@ -1115,7 +1115,7 @@ class CWriter {
             const std::string type = e.is_dispatched ? "block" : c_type(*routine.owner->type);
             const bool through = of && of->type->kind == Kind::interface;
             const std::string self = through ? instance(*of) : of ? "&" + place(*of) : "self";
-            add(made(type + "*", fmt::format("({}*){}", type, self)));
+            add(own = made(type + "*", fmt::format("({}*){}", type, self)));
             if (through) put("if (!{}) {};", given, fault("no_reference"));
         }
         if (e.is_dispatched) dispatched_.insert(&routine);
@@ -1136,10 +1136,16 @@ class CWriter {
             values[&v] = name;
         }
         const std::string name = new_name();
+        const std::string mark =
+            routine.owner ? fmt::format("{}->{}", own, mark_of(routine)) : std::string();
+        const bool recurs = routine.owner && !e.is_dispatched && routine.ring != 0 &&
+                            routine.ring == routine_->ring;
+        if (recurs) put("const __typeof__({1}) mark_{0} = {1}; {1} = 0;", name, mark);
         if (routine.result)
             put("{} {} = {}({});", c_type(*routine.result->type), name, callee, given);
         else
             put("{}({});", callee, given);
+        if (recurs) put("{} = mark_{};", mark, name);
         for (const Argument& argument : e.arguments)
             if (is_eno(*argument.variable))
                 take("twin_eno", argument);

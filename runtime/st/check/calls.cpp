@@ -341,7 +341,7 @@ void note_call(Checking& c, const Expression& call, Routine* called) {
     if (call.is_dispatched) {
         c.routine->dispatches = c.checked.dispatches = true;
     } else if (called) {
-        c.routine->calls.push_back({called, call.place, is_through_reference(call)});
+        c.routine->calls.push_back({called, call.place, is_through_reference(call), true});
     }
 }
 

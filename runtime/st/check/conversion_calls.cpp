@@ -164,6 +164,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     e->place = place;
     e->conversion.is_written = true;
     e->conversion.truncates = e->kind == E::converted && read->truncates;
+    e->conversion.rounds_away = e->kind == E::converted && from.is_real() && !target->is_time() &&
+                                !read->truncates && place.dialect().rounds_away;
     e->conversion.has_sign = target->kind == Kind::text && from.is_integer() &&
                              place.dialect().texts_of_integers_have_signs;
     return target;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <unordered_map>
+
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 
@@ -5,11 +8,17 @@ namespace lineshaft::st {
 
 namespace {
 
+/// A way of calls that comes back.
+struct Round {
+    const Called* last = nullptr;
+    std::string hops;
+    bool recurs = false;  ///< else it is a mistake
+};
+
 struct Ordering {
     Checking& c;
     std::vector<const Called*> way = {};  ///< of calls, from a routine that nothing calls here on
-    std::vector<const Called*> mistakes = {};
-    std::vector<std::string> hops = {};  ///< of each of them
+    std::vector<Round> rounds = {};       ///< one for each routine that is come back to
     bool was_loosened = false;
 };
 
@@ -33,7 +42,8 @@ std::string hops_of(const std::vector<const Called*>& round) {
 }
 
 /// What goes through a reference on a way back to itself is found by the instance, which says
-/// whether it runs already. Else it is a mistake, once for each routine.
+/// whether it runs already. What consists of calls recurs. Else it is a mistake, once for each
+/// routine.
 void close_way(Ordering& o, const Called& last) {
     const auto first = std::ranges::find(o.way, last.routine, &Called::routine);
     std::vector<const Called*> round(first + 1, o.way.end());
@@ -42,10 +52,10 @@ void close_way(Ordering& o, const Called& last) {
     for (const Called* called : round)
         if (called->through_reference) is_loose = called->routine->is_looped = true;
     o.was_loosened |= is_loose;
-    const auto is_told = [&](const Called* other) { return other->routine == last.routine; };
-    if (is_loose || std::ranges::any_of(o.mistakes, is_told)) return;
-    o.mistakes.push_back(&last);
-    o.hops.push_back(hops_of(round));
+    const auto is_told = [&](const Round& other) { return other.last->routine == last.routine; };
+    if (is_loose || std::ranges::any_of(o.rounds, is_told)) return;
+    const auto may_recur = [](const Called* called) { return called->may_recur(); };
+    o.rounds.push_back({&last, hops_of(round), std::ranges::all_of(round, may_recur)});
 }
 
 void visit(Ordering& o, const Called& by) {
@@ -64,11 +74,69 @@ void visit(Ordering& o, const Called& by) {
 /// False: a call was loosened, and it is to be done again.
 bool order(Ordering& o) {
     o.was_loosened = false;
-    o.mistakes.clear(), o.hops.clear(), o.c.checked.order.clear();
+    o.rounds.clear(), o.c.checked.order.clear();
     for (Routine& routine : o.c.checked.routines) routine.state = Routine::State::fresh;
     for (Routine& routine : o.c.checked.routines)
         if (!routine.is_prototype()) visit(o, {&routine});
     return !o.was_loosened;
+}
+
+/// Numbers the rings of routines that call one another, by Tarjan's algorithm.
+struct Rings {
+    struct Visit {
+        std::size_t number = 0, lowest = 0;
+        bool is_open = true;
+    };
+    std::unordered_map<Routine*, Visit> visits = {};
+    std::vector<Routine*> open = {};
+    int found = 0;
+
+    const Visit& visit(Routine& routine) {
+        Visit& own = visits[&routine];  // stays where it is
+        own.number = own.lowest = visits.size();
+        open.push_back(&routine);
+        bool is_ring = false;
+        for (const Called& called : routine.calls) {
+            is_ring |= called.routine == &routine;
+            const auto it = visits.find(called.routine);
+            const Visit& other = it != visits.end() ? it->second : visit(*called.routine);
+            if (other.is_open) own.lowest = std::min(own.lowest, other.lowest);
+        }
+        if (own.lowest == own.number) close(routine, is_ring);
+        return own;
+    }
+
+    void close(Routine& first, bool is_ring) {
+        is_ring |= open.back() != &first;
+        found += is_ring;
+        for (Routine* last = nullptr; last != &first; open.pop_back()) {
+            last = open.back();
+            visits[last].is_open = false;
+            last->ring = is_ring ? found : 0;
+        }
+    }
+};
+
+void note_rings(Ordering& o) {
+    Rings rings;
+    for (Routine* routine : o.c.checked.order)
+        if (!rings.visits.contains(routine)) rings.visit(*routine);
+    for (const Routine* routine : o.c.checked.order)
+        for (const Called& called : routine->calls)
+            if (routine->ring != 0 && called.routine->ring == routine->ring && !called.may_recur())
+                o.rounds.push_back({&called, hops_of({&called}), false});
+}
+
+void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
+    for (const auto& [last, hops, recurs] : rounds) {
+        const std::string text = fmt::format("'{}' calls itself: {}", last->routine->name, hops);
+        if (recurs)
+            c.warn(code::calls_itself, last->place, text, "be sure that it ends soon");
+        else
+            c.fail(code::contains_itself, last->place, text,
+                   last->is_call ? "its instance has one body: write a method, which may do so"
+                                 : "what is in it has no end: use a reference");
+    }
 }
 
 void find_by_instances(Checking& c) {
@@ -104,11 +172,10 @@ void depend(Checking& c, const Type* type, Place place, bool through_reference) 
 void order_routines(Checking& c) {
     Ordering o{c};
     while (!order(o)) continue;
-    for (std::size_t i = 0; i < o.mistakes.size(); ++i)
-        c.fail(code::contains_itself, o.mistakes[i]->place,
-               fmt::format("'{}' calls itself: {}", o.mistakes[i]->routine->name, o.hops[i]),
-               "a PLC has no stack that grows: write a loop");
     find_by_instances(c);
+    const bool is_right = std::ranges::all_of(o.rounds, &Round::recurs);
+    if (is_right && !o.rounds.empty()) note_rings(o);
+    tell_of_rounds(c, o.rounds);
 }
 
 void warn_of_unused(Checking& c) {

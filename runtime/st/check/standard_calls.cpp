@@ -114,9 +114,13 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
     if (!check_count(c, call, f) || !order_arguments(c, e, f)) return nullptr;
     const bool passes = f.typing == Typing::common || f.typing == Typing::chosen ||
                         (f.typing == Typing::scaled && expected && expected->is_real());
-    for (std::size_t i = 0; i < e->arguments.size(); ++i)
-        check(c, e->arguments[i].value,
-              passes && !(f.typing == Typing::chosen && i == 0) ? expected : nullptr);
+    for (std::size_t i = 0; i < e->arguments.size(); ++i) {
+        Expression*& value = e->arguments[i].value;
+        const bool is_text =
+            f.typing == Typing::texts && value->kind == E::name && value->token.quoted;
+        const bool is_passed = passes && !(f.typing == Typing::chosen && i == 0);
+        check(c, value, is_text ? &string_type : is_passed ? expected : nullptr);
+    }
     for (const Argument& argument : e->arguments)
         if (!argument.value->type) return nullptr;
     return standard_type_of(c, e, expected);

@@ -250,10 +250,12 @@ void check_for(Checking& c, Statement& s) {
                type->is_real() ? "count in a DINT, and compute the value from it" : "");
         type = nullptr;
     }
-    if (type && check_target(c, *s.target))
-        for (Expression** part : {&s.value, &s.limit, &s.step})
-            if (*part && check(c, *part, type) && !(part == &s.value && narrows(c, *part, *type)))
-                coerce(c, *part, part == &s.value ? *type : type->plain());
+    if (type && check_target(c, *s.target)) {
+        if (check(c, s.value, type) && !narrows(c, s.value, *type)) coerce(c, s.value, *type);
+        if (check(c, s.limit, type)) coerce(c, s.limit, type->plain());
+        const Type& step = type->bits < 64 ? lint_type : type->plain();  // downwards, too
+        if (s.step && check(c, s.step, &step)) coerce(c, s.step, step);
+    }
     if (s.step && s.step->type && s.step->kind == E::constant && s.step->constant.integer == 0)
         c.fail(code::value_out_of_range, s.step->place, "a loop with step 0 does not end");
     ++c.loops;

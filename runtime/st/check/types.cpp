@@ -161,6 +161,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
         type.values.emplace_back(value.name.text);
         type.numbers.push_back(number++);
     }
+    const auto zero = std::ranges::find(type.numbers, 0);
+    if (text.place.dialect().enumerations_begin_at_zero && zero != type.numbers.end())
+        type.initial.integer = zero - type.numbers.begin();
     const bool is_named_first = has_base && text.name.place.begin == text.place.begin;
     if (is_named_first && !text.place.dialect().is_loose && !type.numbers.empty())
         become_named_values(type, base->plain());

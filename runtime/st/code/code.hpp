@@ -35,6 +35,14 @@ struct ConstantSlot {
     auto operator<=>(const ConstantSlot&) const = default;
 };
 
+/// Slots of a frame.
+struct SlotRange {
+    std::uint32_t first = 0, end = 0;
+};
+
+/// Slots of a block's memory behind its frame, for the frames of calls that recur.
+inline constexpr std::uint32_t pile_slots = 16384;
+
 struct CodeRoutine {
     std::string name;
     std::uint32_t entry = 0, end = 0;  ///< instructions
@@ -43,6 +51,13 @@ struct CodeRoutine {
     std::uint32_t levels = 0;  ///< that an instance which runs it has room for
     std::uint32_t mark = 0;    ///< slot that says that it runs; 0: it has none
     std::vector<ConstantSlot> constants = {};  ///< by their slots
+    /// Of a method in a ring: what a call of it changes of another one on the same instance.
+    SlotRange variables = {}, temporaries = {};
+    std::uint32_t pile = 0;  ///< where the frames of calls that recur begin; 0: it has none
+
+    std::uint32_t kept() const {
+        return variables.end - variables.first + temporaries.end - temporaries.first;
+    }
 };
 
 /// The method of a kind of instance that a call finds.

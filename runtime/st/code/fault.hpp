@@ -17,10 +17,12 @@ enum class Fault : std::int64_t {
     outside_of_variable,  ///< a reference is to nothing of its type that its variable has
     call_has_ended,       ///< the one that had the variable that is referred to
     assertion,            ///< of a TEST, which ends with it
+    calls_too_deep,       ///< routines that call themselves do so more often than there is room for
 };
 
 inline constexpr std::string_view fault_names[] = {
-    "none",   "array_bounds", "division_by_zero",    "out_of_range",   "no_reference",
-    "no_end", "runs_already", "outside_of_variable", "call_has_ended", "assertion"};
+    "none",           "array_bounds", "division_by_zero", "out_of_range",
+    "no_reference",   "no_end",       "runs_already",     "outside_of_variable",
+    "call_has_ended", "assertion",    "calls_too_deep"};
 
 }  // namespace lineshaft::st

@@ -218,6 +218,10 @@ Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance,
               const Context& context, std::int64_t fuel) {
     std::byte* const calls = instance + 8 * std::size_t{code.calls_slot()};
     Frames frames{code, now, context, fuel, instance, routine.levels, calls};
+    if (routine.pile != 0) {
+        frames.pile = frames.pile_begin = instance + 8 * std::size_t{routine.pile};
+        frames.pile_end = frames.pile + 8 * std::size_t{pile_slots};
+    }
     if (code.native && !code.probe) return run_native(frames, routine);
     return run_otherwise(frames, routine);
 }

@@ -27,6 +27,18 @@ auto parts_of(const std::byte* reference) {
                       word(reference, 2));
 }
 
+/// A record of a call that recurs ends with so many slots, of which the first has an address.
+constexpr std::size_t record_end = 3;
+constexpr std::uint64_t no_frame = ~std::uint64_t{0};
+
+/// `16#FF`
+int base_of(std::string_view number) {
+    return number.starts_with("2#")    ? 2
+           : number.starts_with("8#")  ? 8
+           : number.starts_with("16#") ? 16
+                                       : 10;
+}
+
 }  // namespace
 
 std::string_view text_at(const std::byte* place) {
@@ -114,8 +126,15 @@ T number_of_text(const std::byte* from) {
     if (is_negative || text.starts_with('+')) text.remove_prefix(1);
     if (text.find_first_of(".0123456789") != 0) return T{};
     T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc()) return T{};
+    std::from_chars_result read;
+    if constexpr (std::is_integral_v<T>) {
+        const int base = base_of(text);
+        if (base != 10) text.remove_prefix(text.find('#') + 1);
+        read = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    } else {
+        read = std::from_chars(text.data(), text.data() + text.size(), value);
+    }
+    if (read.ec != std::errc()) return T{};
     return is_negative ? -value : value;
 }
 
@@ -189,6 +208,58 @@ bool Frames::has_room(std::uint64_t routine) const {
     return running + 1 + code.routines[routine].depth <= levels;
 }
 
+bool Frames::keep(std::byte* to, std::uint64_t routine, std::uint64_t address,
+                  std::uint64_t slots) {
+    const std::uint64_t bytes = 8 * (slots + record_end);
+    if (!has_room(routine) || static_cast<std::uint64_t>(pile_end - pile) < bytes) return false;
+    set_word(to, 0, static_cast<std::uint64_t>(pile - root) / 8);
+    pile += bytes;
+    set_word(pile - 8 * record_end, 0, address);
+    set_word(pile - 8 * record_end, 1, routine);
+    set_word(pile - 8 * record_end, 2, static_cast<std::uint64_t>(top - bottom) / 16);
+    return true;
+}
+
+bool Frames::push(std::byte* to, std::uint64_t routine) {
+    return keep(to, routine, no_frame, code.routines[routine].frame);
+}
+
+bool Frames::save(std::byte* to, std::uint64_t routine, std::uint64_t address) {
+    const CodeRoutine& method = code.routines[routine];
+    if (!keep(to, routine, address, method.kept())) return false;
+    std::byte* kept = place(word(to, 0));
+    for (const auto& [first, end] : {method.variables, method.temporaries}) {
+        copy_slots(kept, place(address + first), end - first);
+        kept += 8 * std::size_t{end - first};
+    }
+    return true;
+}
+
+void Frames::swap() const {
+    const std::uint64_t address = word(pile - 8 * record_end, 0);
+    const CodeRoutine& method = code.routines[word(pile - 8 * record_end, 1)];
+    std::byte* kept = pile - 8 * (record_end + method.kept());
+    for (const auto& [first, end] : {method.variables, method.temporaries}) {
+        const std::size_t bytes = 8 * std::size_t{end - first};
+        std::swap_ranges(kept, kept + bytes, place(address + first));
+        kept += bytes;
+    }
+}
+
+void Frames::pop() {
+    const std::byte* record = pile - 8 * record_end;
+    const CodeRoutine& routine = code.routines[word(record, 1)];
+    const bool has_own = word(record, 0) == no_frame;
+    pile -= 8 * (record_end + (has_own ? routine.frame : routine.kept()));
+}
+
+void Frames::unwind(std::uint64_t running) {
+    while (pile != pile_begin && word(pile - 8, 0) >= running) {
+        if (word(pile - 8 * record_end, 0) != no_frame) swap();
+        pop();
+    }
+}
+
 void Frames::mark(std::uint64_t at, std::uint64_t frame, bool runs) const {
     std::byte* level = top;
     for (;;) {
@@ -222,6 +293,7 @@ std::optional<std::uint64_t> Frames::caught(Fault fault) {
         if (it != code.handlers.end()) {
             top = level;
             base = frame;
+            unwind(static_cast<std::uint64_t>(top - bottom) / 16);
             if (code.has_kinds) mark(at, base, true);
             return it->entry;
         }
@@ -240,6 +312,7 @@ std::uint64_t Frames::exception() const {
         case Fault::out_of_range:
             return 0x103;  // RTSEXCPT_OVERFLOW
         case Fault::runs_already:
+        case Fault::calls_too_deep:
             return 0x54;  // RTSEXCPT_STACK_OVERFLOW
         default:
             return 0x51;  // RTSEXCPT_ACCESS_VIOLATION

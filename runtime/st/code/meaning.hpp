@@ -224,7 +224,8 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what);
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign = false);
 
-/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none.
+/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
+/// whole number may be `16#FF`.
 template <class T>
 T number_of_text(const std::byte* from);
 
@@ -266,6 +267,9 @@ struct Frames {
     std::uint64_t reached = 0;         ///< what the last reference is to
     std::uint64_t* counted = nullptr;  ///< instructions of each class
     std::int64_t fuel_left = fuel;     ///< when a run ended
+    std::byte* pile = nullptr;         ///< behind the frames of calls that recur
+    std::byte* pile_begin = nullptr;
+    std::byte* pile_end = nullptr;  ///< where there is no more room for them
 
     /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
     /// times 2^32, plus a slot.
@@ -299,6 +303,19 @@ struct Frames {
     bool has(std::uint64_t address, std::uint32_t method) const;
 
     bool has_room(std::uint64_t routine) const;
+
+    // Calls within a ring of routines that call one another. Each has a record on a pile: slots,
+    // the address of the frame that they are kept of, or none, the routine, and how many calls ran.
+
+    /// A function, which gets a frame of its own: its address, to the slot. False: there is no
+    /// room.
+    bool push(std::byte* to, std::uint64_t routine);
+    /// A method on the instance at the address: what it may change of a call of its own that runs
+    /// is kept at the address that the slot is given.
+    bool save(std::byte* to, std::uint64_t routine, std::uint64_t address);
+    /// Behind the call of a method: what is kept is there again, and what the call left is kept.
+    void swap() const;
+    void pop();
 
     /// Whether what runs on that frame at that instruction, and what called it, runs.
     void mark(std::uint64_t at, std::uint64_t frame, bool runs) const;
@@ -377,6 +394,11 @@ struct Frames {
 
     /// Of a scan, at that instruction.
     Fault end(Fault fault, std::uint64_t at) const;
+
+  private:
+    /// Of the calls that a fault ends, where so many run behind it.
+    void unwind(std::uint64_t running);
+    bool keep(std::byte* to, std::uint64_t routine, std::uint64_t address, std::uint64_t slots);
 };
 
 }  // namespace lineshaft::st::meaning

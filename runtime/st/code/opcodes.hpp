@@ -94,6 +94,10 @@
     OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); frames.find(at(a), U(b), c)) \
     OP(attempt, move, "wrn-", put(a, U(b) != 0 && frames.has(U(b), c) ? U(b) : 0))        \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); if (!frames.has_room(found)) FAIL(no_end); CALL(U(a), found)) \
+    OP(push_frame, call, "wf--", if (!frames.push(at(a), b)) FAIL(calls_too_deep))                    \
+    OP(save_frame, call, "wfr-", if (!frames.save(at(a), b, U(c))) FAIL(calls_too_deep))              \
+    OP(swap_frame, call, "----", frames.swap())                                                       \
+    OP(pop_frame, call, "----", frames.pop())                                                         \
     OP(exception, move, "w---", put(a, frames.exception()))                                           \
     OP(begin_once, call, "w---", if (U(a) != 0) FAIL(runs_already); put(a, std::uint64_t{1}))        \
     OP(call_block, call, "sn--", code.call_block(at(a), b, frames.now, frames.context))                                        \
@@ -156,6 +160,7 @@
     OP(floor, real, "wr--", put(a, std::floor(R(b))))                                                \
     OP(ceil, real, "wr--", put(a, std::ceil(R(b))))                                                  \
     OP(truncate, real, "wr--", put(a, std::trunc(R(b))))                                             \
+    OP(round_away, real, "wr--", put(a, std::round(R(b))))                                           \
     OP(round, real, "wr--", put(a, std::nearbyint(R(b))))                                            \
     OP(narrow, real, "wr--", put(a, narrow(R(b))))                                                   \
     OP(real_from_signed, real, "wr--", put(a, double{static_cast<float>(I(b))}))                     \

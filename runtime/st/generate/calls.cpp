@@ -1,5 +1,8 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/statements.hpp"
@@ -61,13 +64,38 @@ Location kept(Writing& w, const Expression& value) {
     return made;
 }
 
+/// A call within a ring of routines: the callee may run already.
+bool recurs(const Writing& w, const Expression& e) {
+    return !e.is_dispatched && w.routine->ring != 0 && e.routine->ring == w.routine->ring;
+}
+
+/// A variable of a method's call, which has another value while the method runs once more.
+bool is_in_call(const Writing& w, const Expression& value) {
+    const Expression* at = &value;
+    while (at->kind == E::member || at->kind == E::index || at->kind == E::bit)
+        at = at->operands[0];
+    const auto is_it = [&](const Variable& own) { return at->variable == &own; };
+    return at->kind == E::name && at->variable->space == Space::frame &&
+           at->variable->section != Section::kept &&
+           std::ranges::any_of(w.routine->variables, is_it);
+}
+
+void refuse_lent(Writing& w, const Variable& variable, const Expression& value) {
+    w.out.add(code::wrong_arguments, value.place.mark(),
+              fmt::format("'{}' of a call that may recur is given a variable of the method's call",
+                          variable.text),
+              "declare that variable in the block, or take the value as a result");
+}
+
 /// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. A copy is
 /// referred to by nothing: ADR of that VAR_IN_OUT is NULL.
-void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
-           std::vector<Later>& later, std::vector<Lent>& lent) {
+void refer(Writing& w, const Expression& e, const Location& to, const Variable& variable,
+           const Expression& value, std::vector<Later>& later, std::vector<Lent>& lent) {
     const bool is_value = value.kind == E::call || value.kind == E::converted;
     Location at = is_value ? kept(w, value) : locate(w, value);
     const bool is_lent = is_value || is_in_bytes(at);
+    if (w.routine->owner && recurs(w, e) && (is_lent || is_in_call(w, value)))
+        return refuse_lent(w, variable, value);
     if (is_lent && !is_value) {
         if (at.mode != Mode::slot) at = as_address(w, at);
         lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, *value.type))}, value.type});
@@ -101,23 +129,42 @@ void give_left_out(Writing& w, const Location& frame, const Expression& e) {
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
         std::vector<Lent> lent;  // what stands for it is a variable of its own
-        refer(w, reference, *argument.variable, *argument.value, later, lent);
+        refer(w, e, reference, *argument.variable, *argument.value, later, lent);
         give(w, later);
         w.land(given);
     }
 }
 
-/// Inputs and references, and what is left out. Gives what is to be written back.
+/// What a method in a ring keeps of the call that may run, in slots from that address on. What is
+/// given to it may stand in that call, and is put aside.
+void save(Writing& w, const Location& frame, const Expression& e, Slot kept,
+          std::vector<Later>& later) {
+    const Routine& routine = *e.routine;
+    for (Later& value : later) {
+        if ((value.slot & region_mask) != 0) continue;
+        const std::uint32_t slots = std::max(value.slots, 1U);
+        const Slot aside = w.new_temporary(slots);
+        copy(w, {Mode::slot, aside}, {Mode::slot, value.slot}, slots);
+        value.slot = aside;
+    }
+    w.place = e.place;
+    w.put(Op::save_frame, kept, w.routine_number(routine), frame.index);
+    if (routine.mark != 0) store(w, behind(frame, routine.mark), w.constant_slot(0));
+}
+
+/// Inputs and references, and what is left out. Gives what is to be written back. `kept`: the slot
+/// for the address of what a method in a ring keeps.
 std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
-                       const Routine& routine) {
+                       const Routine& routine, Slot kept = none) {
     const auto is_given = [](const Argument& argument) {
         const Section section = argument.variable->section;
         return !argument.is_left_out &&
                (section == Section::input || section == Section::in_out || is_set(argument));
     };
     give_left_out(w, frame, e);
-    const bool nested = std::ranges::any_of(
-        e.arguments, [&](const Argument& a) { return is_given(a) && has_call(*a.value); });
+    const bool nested = kept != none || std::ranges::any_of(e.arguments, [&](const Argument& a) {
+                            return is_given(a) && has_call(*a.value);
+                        });
     std::vector<Later> later;
     std::vector<Lent> lent;
     for (const Argument& argument : e.arguments) {
@@ -126,7 +173,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
         const Type& type = *variable.type;
         const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
-            refer(w, to, variable, *argument.value, later, lent);
+            refer(w, e, to, variable, *argument.value, later, lent);
         } else if (!nested) {
             assign(w, to, type, *argument.value);
         } else if (type.is_scalar()) {
@@ -138,6 +185,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
             assign(w, {Mode::slot, later.back().slot}, type, *argument.value);
         }
     }
+    if (kept != none) save(w, frame, e, kept, later);
     give(w, later);
     if (routine.has_instances()) return lent;
     for (const Variable& variable : routine.variables) {
@@ -237,6 +285,27 @@ Slot address_of_instance(Writing& w, const Expression& e) {
     return to;
 }
 
+/// On a frame of its own, or with what the method that may run has in its own kept.
+Location call_in_ring(Writing& w, const Expression& e) {
+    const Routine& routine = *e.routine;
+    const bool is_function = routine.is_function();
+    const Slot made = w.new_temporary();
+    w.place = e.place;
+    if (is_function) w.put(Op::push_frame, made, w.routine_number(routine));
+    const Slot at = is_function ? made : address_of_instance(w, e);
+    Location frame{Mode::address, 0, at};
+    const std::vector<Lent> lent = give(w, frame, e, routine, is_function ? none : made);
+    w.place = e.place;
+    w.put(Op::call_at, at, w.routine_number(routine));
+    if (!is_function) {
+        w.put(Op::swap_frame);
+        frame = {Mode::address, 0, made, 0 - routine.kept_from()};
+    }
+    take(w, frame, e, lent);
+    w.put(Op::pop_frame);
+    return frame;
+}
+
 }  // namespace
 
 Slot call(Writing& w, const Expression& e, Slot wanted) {
@@ -257,6 +326,7 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
 Location call_routine(Writing& w, const Expression& e) {
     const Routine& routine = *e.routine;
     if (e.is_dispatched) return find_and_call(w, e, address_of_instance(w, e));
+    if (recurs(w, e)) return call_in_ring(w, e);
     const bool is_function = routine.is_function();
     Location frame =
         is_function ? Location{Mode::slot, Region::window} : on_frame(w, method_base(w, e));

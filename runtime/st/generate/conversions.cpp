@@ -55,13 +55,16 @@ Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 }
 
 /// As a whole number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE
-/// in s; in 16 bits a DATE is in days since 1990, as Siemens has it.
+/// in s, the long ones in ns; in 16 bits a DATE is in days since 1990, as Siemens has it.
 Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
     constexpr std::uint64_t day = 86'400'000'000'000;
     const bool in_days = time.kind == Kind::date && number.bits == 16;
-    const Slot unit = w.constant_slot(in_days ? day : in_seconds ? 1'000'000'000 : 1'000'000);
+    const Slot unit = w.constant_slot(in_days          ? day
+                                      : time.counts_ns ? 1
+                                      : in_seconds     ? 1'000'000'000
+                                                       : 1'000'000);
     const Slot start = w.constant_slot(in_days ? 7305 * day : 0);
     if (to.is_time()) {
         if (!in_days) return w.emit(Op::mul_lint, wanted, slot, unit);
@@ -71,14 +74,13 @@ Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, Sl
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
 }
 
-/// A time is in ns as an integer of 64 bits, but in dialects that count those as all others; as a
-/// real number an LTIME is.
+/// A time is in ns as an integer of 64 bits, but in dialects that count those as all others.
 Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
     const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
     if (number.is_real()) {
-        const double unit = in_seconds ? 1e9 : time.counts_ns ? 1 : 1e6;
+        const double unit = time.counts_ns ? 1 : in_seconds ? 1e9 : 1e6;
         const Slot one = w.constant_slot(lreal_type, {.real = unit});
         if (from.is_real())
             return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, one));
@@ -159,7 +161,9 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (is_counted(e))
         return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(),
                                wanted);
-    return convert(w, value(w, operand), *operand.type, *e.type, e.conversion.truncates, wanted);
+    Slot from = value(w, operand);
+    if (e.conversion.rounds_away) from = w.emit(Op::round_away, none, from);
+    return convert(w, from, *operand.type, *e.type, e.conversion.truncates, wanted);
 }
 
 Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,

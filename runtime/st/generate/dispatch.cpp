@@ -20,15 +20,27 @@ const Routine* find_in(const Routine& block, const Routine& wanted) {
     return find_method(block, wanted);
 }
 
+void prepare_recursion(Writing& w) {
+    const auto& order = w.checked.order;
+    const auto in_ring = [](const Routine* routine) { return routine->ring != 0; };
+    if (std::ranges::none_of(order, in_ring)) return;
+    for (Routine* routine : order) {
+        routine->may_recur = routine->ring != 0 || routine->dispatches;
+        for (const Called& called : routine->calls) routine->may_recur |= called.routine->may_recur;
+    }
+}
+
 }  // namespace
 
 void prepare_dispatch(Writing& w) {
     w.code.has_kinds = w.checked.dispatches;
+    prepare_recursion(w);
     for (Routine* routine : w.checked.order) {
         routine->may_meet_itself = routine->dispatches;
         for (const Called& called : routine->calls)
             routine->may_meet_itself |= called.routine->may_meet_itself;
-        routine->levels = routine->depth + (routine->may_meet_itself ? found_levels : 0);
+        routine->levels = routine->depth + (routine->may_meet_itself ? found_levels : 0) +
+                          (routine->may_recur ? recurring_levels : 0);
         Routine* block = routine->owner ? routine->owner : routine;
         block->levels = std::max(block->levels, routine->levels);
     }
@@ -65,6 +77,16 @@ const Writing::Image& signature_image(Writing& w, const Routine& method) {
 std::uint32_t method_number(Writing& w, const Routine& called) {
     const auto next = static_cast<std::uint32_t>(w.method_numbers.size());
     return w.method_numbers.emplace(&origin(called), next).first->second;
+}
+
+void finish_recursion(Writing& w) {
+    for (const Routine* routine : w.checked.order) {
+        const Routine& block = routine->owner ? *routine->owner : *routine;
+        if (!routine->may_recur || block.is_function()) continue;
+        Writing::Image& image = w.images[block.type];
+        image.resize(block.frame + pile_slots, 0);
+        w.code.routines[w.routine_number(*routine)].pile = block.frame;
+    }
 }
 
 void finish_dispatch(Writing& w) {

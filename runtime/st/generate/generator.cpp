@@ -25,12 +25,13 @@ void begin(Writing& w, Routine& routine) {
     w.constant_slots.clear();
     w.loops.clear();
     w.labels.clear();
-    w.numbers[&routine] = static_cast<std::uint32_t>(w.code.routines.size());
     w.code.routines.push_back({.name = routine.name,
                                .entry = w.next(),
                                .depth = routine.depth,
                                .levels = block->levels,
                                .mark = routine.mark});
+    if (routine.ring != 0)
+        w.code.routines.back().variables = {routine.kept_from(), routine.variables_end};
     w.place = routine.pou->place;
     if (routine.mark != 0) w.put(Op::begin_once, routine.mark);
     const bool in_function = routine.is_function();
@@ -83,6 +84,7 @@ void finish(Writing& w, Routine& routine) {
     if (is_function) end = std::max(end, w.code.instructions[code.entry].a + 1);
     if (!is_function) w.image->resize(end, 0);
     code.frame = end;
+    if (routine.ring != 0) code.temporaries = {temporaries, windows};
     frame_of.frame = std::max(frame_of.frame, end);
     --w.unwritten_parts[&frame_of];
 }
@@ -121,8 +123,11 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
             lay_out_members(w, *global.type, false);
         else if (global.type->kind != Kind::block && global.name != image_name)
             slots_of(w, *global.type);
+    for (const Routine* routine : w.checked.order)
+        w.numbers[routine] = static_cast<std::uint32_t>(w.numbers.size());
     for (Routine* routine : w.checked.order) {
         if (!w.out.empty()) return {};
+        if (routine->ring != 0) lay_out_ring(w, routine->ring);
         write(w, *routine);
     }
     finish_dispatch(w);
@@ -138,6 +143,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     }
     finish_images(w);
     finish_shapes(w);
+    finish_recursion(w);
     w.link();
     return {std::move(w.code), std::move(w.images), std::move(w.assertions)};
 }

@@ -163,6 +163,7 @@ void lay_out(Writing& w, Routine& block) {
 }
 
 void lay_out_call(Writing& w, Routine& routine) {
+    if (w.laid_out.contains(&routine)) return;
     Routine* block = routine.owner;
     if (block) lay_out(w, *block);
     std::uint32_t at = block ? block->frame : 0;
@@ -184,6 +185,15 @@ void lay_out_call(Writing& w, Routine& routine) {
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);
     for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
+}
+
+void lay_out_ring(Writing& w, int ring) {
+    for (Routine* routine : w.checked.order) {
+        if (routine->ring != ring || w.laid_out.contains(routine)) continue;
+        lay_out_call(w, *routine);
+        w.laid_out.insert(routine);
+        if (routine->owner) routine->owner->frame = routine->variables_end;
+    }
 }
 
 }  // namespace lineshaft::st

@@ -34,6 +34,8 @@ bool is_in_signature(const Variable& variable, bool is_given);
 
 /// What is given to a function or a method comes first. A method's frame is a part of its block's.
 void lay_out_call(Writing& w, Routine& routine);
+/// Before the first of a ring of routines is written, which call one another.
+void lay_out_ring(Writing& w, int ring);
 
 // images.cpp
 
@@ -53,6 +55,8 @@ void finish_images(Writing& w);
 
 /// Levels of calls that an instance has room for beyond those that are known.
 constexpr std::uint32_t found_levels = 64;
+/// And those for calls that recur.
+constexpr std::uint32_t recurring_levels = 500;
 
 /// Which routines what they call may call again, by an instance; and the levels of calls that
 /// blocks have room for: those of a base and of what extends it are one.
@@ -66,6 +70,9 @@ const Writing::Image& signature_image(Writing& w, const Routine& method);
 
 /// The number that all methods share which may be found where this one is called; or bodies.
 std::uint32_t method_number(Writing& w, const Routine& called);
+
+/// When all images are made: what runs calls that recur has room for them behind its frame.
+void finish_recursion(Writing& w);
 
 /// When all is laid out: what each kind of instance has for each number.
 void finish_dispatch(Writing& w);

@@ -161,6 +161,10 @@ void write_for(Writing& w, const Statement& s) {
         value_to(w, *s.step, limit + 1);
     else
         w.put(Op::move, limit + 1, w.constant_slot(1));
+    const auto look_again = [&](const Expression* part, Slot to) {
+        const bool varies = part && part->kind != E::constant;
+        if (varies && s.place.dialect().loops_look_again) value_to(w, *part, to);
+    };
     if (type.in_a_run().is_subrange) store(w, target, counter);
     Writing::Loop loop;
     const bool is_long = type.is_unsigned_64();
@@ -174,6 +178,8 @@ void write_for(Writing& w, const Statement& s) {
     write_block(w, s.body);
     w.land(w.loops.back().nexts);
     w.place = s.place;
+    look_again(s.limit, limit);
+    look_again(s.step, limit + 1);
     if (!direct) w.put(Op::move, counter, load(w, target));
     w.put(is_long ? Op::repeat_next_unsigned : Op::repeat_next, counter, limit, start);
     w.land(w.loops.back().exits);

@@ -107,6 +107,7 @@ struct Writing {
         std::uint32_t at = 0;  ///< of the table, or of the instruction
     };
     std::vector<Late> late = {};
+    std::unordered_set<const Routine*> laid_out = {};  ///< of rings, before they are written
     std::unordered_map<const Routine*, std::size_t> unwritten_parts =
         {};  ///< of blocks: bodies and methods
 

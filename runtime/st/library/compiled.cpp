@@ -94,9 +94,15 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
     std::uint64_t at = slot(place_slot);
     found.mark = place(at);
     const std::uint32_t stack = code.calls_slot();
-    for (std::uint64_t level = slot(depth_slot);; --level) {
+    const std::uint64_t depth = slot(depth_slot);
+    constexpr std::uint64_t most_told = 20;  // the first ones and the last one
+    for (std::uint64_t level = depth;; --level) {
         found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
         if (level == 0) return found;
+        if (depth - level + 2 == most_told && level > 2) {
+            found.calls.push_back(fmt::format("{} more", level - 1));
+            level = 1;
+        }
         at = slot(stack + 2 * static_cast<std::uint32_t>(level - 1)) - 1;
     }
 }

@@ -38,7 +38,10 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .texts_are_bytes = true,
                          .texts_have_any_length = true,
                          .long_numbers_count_time = true,
-                         .reckons_wide = true};
+                         .reckons_wide = true,
+                         .loops_look_again = true,
+                         .rounds_away = true,
+                         .enumerations_begin_at_zero = true};
 
 const Dialect scl = {.sign_precedes_power = false,
                      .sets_variables_of_instances = true,

@@ -34,8 +34,11 @@ struct Dialect {
     bool dint_is_time = false;                ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;       ///< STRING[0], and a reference to it is one to any
     bool long_numbers_count_time = false;     ///< TIME_TO_LINT(T#1s) is 1000, else in ns
-    bool reckons_wide = false;    ///< whole numbers in 64 bits, until they are kept, as on x64
-    bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
+    bool reckons_wide = false;      ///< whole numbers in 64 bits, until they are kept, as on x64
+    bool bool_is_number = false;    ///< a BOOL is 0 or 1 where a number is due
+    bool loops_look_again = false;  ///< FOR reads its limit and step in each pass, else once
+    bool rounds_away = false;       ///< REAL_TO_INT(2.5) is 3, else the even one
+    bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the

@@ -161,7 +161,9 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     if (p.is(Word::at_) && p.next().word == Word::direct) at = parse_location(p, names);
     const bool is_edge = p.says("r_edge") || p.says("f_edge");
     const Token edge = is_edge ? p.take() : Token{};
-    Expression* initial = p.accept(Word::assign)   ? parse_initials(p)
+    const bool refers = p.source->dialect.is_loose && p.accept(Word::reference_assign);
+    Expression* initial = refers                   ? parse_expression(p)
+                          : p.accept(Word::assign) ? parse_initials(p)
                           : is_of_caller(p, first) ? value_of_caller(p, *type)
                                                    : nullptr;
     if (!p.panic) end_statement(p);

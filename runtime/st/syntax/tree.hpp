@@ -39,11 +39,12 @@ struct Argument {
 
 /// How a conversion differs from what its types say.
 struct Conversion {
-    bool truncates = false;   ///< a real number towards zero, else to the nearest
-    bool has_sign = false;    ///< into a text: `+5`, as SCL writes it
-    bool is_attempt = false;  ///< of `?=`: none, if what is there is not of the type
-    bool is_written = false;  ///< by the user, who says what is kept
-    bool is_bcd = false;      ///< the bit string of both has a decimal digit in each four bits
+    bool truncates = false;    ///< a real number towards zero, else to the nearest
+    bool rounds_away = false;  ///< a real number halfway from 0, else to the even one
+    bool has_sign = false;     ///< into a text: `+5`, as SCL writes it
+    bool is_attempt = false;   ///< of `?=`: none, if what is there is not of the type
+    bool is_written = false;   ///< by the user, who says what is kept
+    bool is_bcd = false;       ///< the bit string of both has a decimal digit in each four bits
 };
 
 /// Bits of a whole number or a bit string, from the lowest on.

@@ -27,8 +27,8 @@ Type character() {
     return type;
 }
 
-Type long_time() {
-    Type type = elementary(Kind::time, "LTIME", 64, true);
+Type long_time(Kind kind, const char* name) {
+    Type type = elementary(kind, name, 64, true);
     type.counts_ns = true;
     return type;
 }
@@ -58,18 +58,18 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::real, "REAL", 32),
                       elementary(Kind::real, "LREAL", 64),
                       elementary(Kind::time, "TIME", 64, true),
-                      long_time(),
+                      long_time(Kind::time, "LTIME"),
                       text_type(),
                       elementary(Kind::date, "DATE", 64, true),
-                      elementary(Kind::date, "LDATE", 64, true),
+                      long_time(Kind::date, "LDATE"),
                       elementary(Kind::clock, "TOD", 64, true),
                       elementary(Kind::clock, "TIME_OF_DAY", 64, true),
-                      elementary(Kind::clock, "LTOD", 64, true),
-                      elementary(Kind::clock, "LTIME_OF_DAY", 64, true),
+                      long_time(Kind::clock, "LTOD"),
+                      long_time(Kind::clock, "LTIME_OF_DAY"),
                       elementary(Kind::moment, "DT", 64, true),
                       elementary(Kind::moment, "DATE_AND_TIME", 64, true),
-                      elementary(Kind::moment, "LDT", 64, true),
-                      elementary(Kind::moment, "LDATE_AND_TIME", 64, true),
+                      long_time(Kind::moment, "LDT"),
+                      long_time(Kind::moment, "LDATE_AND_TIME"),
                       character()};
 static_assert(std::size(table) == std::size(elementary_names));
 

@@ -23,11 +23,10 @@ std::uint64_t bytes_of(const Type& type) {
         case Type::Kind::boolean:
             return 1;
         case Type::Kind::time:
-            return type.counts_ns ? 8 : 4;
         case Type::Kind::date:
         case Type::Kind::clock:
         case Type::Kind::moment:
-            return type.name.starts_with('L') ? 8 : 4;
+            return type.counts_ns ? 8 : 4;
         case Type::Kind::text:
             return type.length + 1;
         case Type::Kind::enumeration:
@@ -63,6 +62,10 @@ bool has_call(const Expression& e) {
     for (const Expression* operand : e.operands)
         if (operand && has_call(*operand)) return true;
     return std::ranges::any_of(e.arguments, [](const Argument& a) { return has_call(*a.value); });
+}
+
+bool Called::may_recur() const {
+    return is_call && !through_reference && (routine->owner || routine->is_function());
 }
 
 std::vector<Variable*> all_variables(const Routine& block) {

@@ -59,7 +59,7 @@ struct Type {
     bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;        ///< STRUCT without a TYPE: any of its members is equal
-    bool counts_ns = false;         ///< LTIME, of which a real number is in ns, not ms
+    bool counts_ns = false;         ///< LTIME, LDATE, LTOD, LDT: as numbers they are in ns
     const Type* base = nullptr;  ///< of a subrange, of named values; of an enumeration with numbers
     const Type* element = nullptr;         ///< of an array; what a reference is to, or null
     Referring referring = Referring::ref;  ///< of a reference
@@ -198,6 +198,10 @@ struct Called {
     Routine* routine = nullptr;
     Place place = {};
     bool through_reference = false;  ///< of an instance that a reference is to
+    bool is_call = false;            ///< not an instance that it has
+
+    /// The callee may have another frame than the one that runs.
+    bool may_recur() const;
 };
 
 /// What runs: the body of a POU, or a method.
@@ -225,7 +229,8 @@ struct Routine {
     Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
     Variable* begun = nullptr;            ///< of a block: that the first was done
     std::vector<Called> calls = {};
-    bool is_looped = false;         ///< calls of it through references are found by the instance
+    bool is_looped = false;  ///< calls of it through references are found by the instance
+    int ring = 0;  ///< of routines that call one another in a ring: the number of that; else 0
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
@@ -252,6 +257,10 @@ struct Routine {
     std::uint32_t first = 0;          ///< of a method: slot of the first that is given to it
     std::uint32_t mark = 0;           ///< slot that says that it runs; 0: it has none
     bool may_meet_itself = false;     ///< what it calls may call it, by the instance
+    bool may_recur = false;           ///< it is in a ring, or calls what may be
+
+    /// Of a method in a ring: the first slot that a call of it changes of another one.
+    std::uint32_t kept_from() const { return mark != 0 ? mark : first; }
 };
 
 /// Of a block: its variables, those of its bases first.
