@@ -158,14 +158,18 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     const Type& bits = from.kind == Kind::bits ? from : *target;
     const bool counts = place.dialect().bits_count_in_reals && bits.kind == Kind::bits &&
                         (from.is_real() || target->is_real());
-    if (counts) convert(c, value, integer_type(bits.bits, false));
-    convert(c, value, *target);
+    const bool rounds_away = from.is_real() && !read->truncates && place.dialect().rounds_away;
+    const auto become = [&](const Type& type) {
+        const bool is_rounded = value->type->is_real() && (type.is_integer() || type.is_bits());
+        convert(c, value, type);
+        value->conversion.rounds_away = value->kind == E::converted && rounds_away && is_rounded;
+    };
+    if (counts) become(integer_type(bits.bits, false));
+    become(*target);
     e = value;
     e->place = place;
     e->conversion.is_written = true;
     e->conversion.truncates = e->kind == E::converted && read->truncates;
-    e->conversion.rounds_away = e->kind == E::converted && from.is_real() && !target->is_time() &&
-                                !read->truncates && place.dialect().rounds_away;
     e->conversion.has_sign = target->kind == Kind::text && from.is_integer() &&
                              place.dialect().texts_of_integers_have_signs;
     return target;
