@@ -1,5 +1,6 @@
 #pragma once
 
+#include <charconv>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,18 @@ std::string unquoted(std::string_view cell);
 
 /// As a cell of an RFC 4180 file with commas, in quotes where it must.
 std::string quoted(const std::string& text);
+
+/// Reads a number; why a cell does not do, null when it does.
+template <class Number>
+const char* read_cell(const std::string& text, Number& value) {
+    const char* first = text.data();
+    const char* const last = first + text.size();
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++first;
+    const auto [stop, error] = std::from_chars(first, last, value);
+    if (stop != last || error == std::errc::invalid_argument) return "is not a number";
+    if (error != std::errc{}) return "is beyond the range of numbers";
+    return nullptr;
+}
 
 /// The cells of one line, as texts without their quotes.
 std::vector<std::string> csv_cells(std::string_view line, char separator = ',');

@@ -104,16 +104,10 @@ bool Lines::next(std::string_view& line) {
     return true;
 }
 
-/// Why a cell does not do; empty when it does.
-template <class Number>
-const char* parse(const std::string& text, Number& value) {
-    const char* first = text.data();
-    const char* const last = first + text.size();
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') ++first;
-    const auto [stop, error] = std::from_chars(first, last, value);
-    if (stop != last || error == std::errc::invalid_argument) return "is not a number";
-    if (error != std::errc{}) return "is beyond the range of numbers";
-    return nullptr;
+std::string help_with(const CsvColumn& column) {
+    if (column.type != Type::real) return fmt::format("the column is {}", name_of(column.type));
+    if (column.names.empty()) return "leave the cell empty where there is no value";
+    return fmt::format("write {}", fmt::join(column.names, ", "));
 }
 
 /// Grows by half, so that the old values and the new ones together take at most 20 bytes each.
@@ -248,7 +242,7 @@ bool CsvReader::header() {
 bool CsvReader::is_title(std::string_view cell) {
     const std::string title = unquoted(cell);
     double number = 0;
-    if (!title.empty() && parse(title, number)) return true;
+    if (!title.empty() && read_cell(title, number)) return true;
     fail(code::no_columns, cell,
          title.empty() ? "a column has no name"
                        : fmt::format("'{}' is not a name of a column", title),
@@ -277,6 +271,8 @@ CsvColumn CsvReader::column_of(std::string_view cell) const {
         column.type = known->type;
         column.names = known->values;
     }
+    for (const auto& [name, values] : options_.names)
+        if (name == column.name) column.names = values;
     return column;
 }
 
@@ -403,7 +399,7 @@ void CsvReader::take(CsvColumn& column, std::int64_t value) {
     append(column.values, rounded);
 }
 
-/// Empty, quoted, between blanks, with a decimal comma or a plus; or wrong.
+/// A name, empty, quoted, between blanks, with a decimal comma or a plus; or wrong.
 void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
     std::string text = unquoted(cell);
     if (separator_ == ';' && column.type == Type::real) std::ranges::replace(text, ',', '.');
@@ -411,18 +407,19 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
     double real = missing;
     std::int64_t whole = 0;
     if (!text.empty() && column.type == Type::real) {
-        wrong = parse(text, real);
+        wrong = read_cell(text, real);
         if (!wrong && !std::isfinite(real)) wrong = "is not a number";
     } else if (!text.empty()) {
-        wrong = parse(text, whole);
+        wrong = read_cell(text, whole);
         if (!wrong && fits(column, whole)) return take(column, whole);
         if (!wrong) wrong = "is not one of its values";
     }
-    if (wrong)
+    const auto named = std::ranges::find(column.names, text);
+    if (wrong && named != column.names.end())
+        real = static_cast<double>(named - column.names.begin());
+    else if (wrong)
         fail(code::cell_is_no_number, cell,
-             fmt::format("'{}' in column '{}' {}", text, column.title, wrong),
-             column.type == Type::real ? "leave the cell empty where there is no value"
-                                       : fmt::format("the column is {}", name_of(column.type)));
+             fmt::format("'{}' in column '{}' {}", text, column.title, wrong), help_with(column));
     append(column.values, real);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,7 +19,7 @@ struct CsvColumn {
     std::string title;  ///< as the header has it
     std::string unit;  ///< from the sidecar, or from a title `name [unit]`; empty: none, or unknown
     Type type = Type::real;          ///< from the sidecar; without one all are real
-    std::vector<std::string> names;  ///< of an enumeration
+    std::vector<std::string> names;  ///< of an enumeration; cells may have them
     std::vector<double> values;      ///< a row each; not a number where the cell is empty
 
     struct Large {
@@ -50,15 +51,17 @@ struct CsvTable {
 struct CsvOptions {
     std::vector<std::string> columns =
         {};  ///< names or titles; empty: all. Others are not looked at
+    std::map<std::string, std::vector<std::string>> names =
+        {};  ///< of columns whose cells may be the names of 0, 1, 2 and so on
     std::size_t most_rows = static_cast<std::size_t>(-1);  ///< that may be kept in memory
     bool last_row_may_be_cut = false;  ///< what a crash left: read up to the last full row
 };
 
 /// Reads a CSV file (RFC 4180) whose first line names its columns and whose cells are numbers,
-/// empty where a value is missing: a trace, or what another tool wrote. Quoted cells, lines that
-/// end with CR LF or CR, a byte order mark and blanks around numbers are taken; with semicolons
-/// between cells the decimal point may be a comma. A pipe will do. Empty when anything is wrong;
-/// then `out` says what, at most 20 mistakes:
+/// or names of them, empty where a value is missing: a trace, or what another tool wrote. Quoted
+/// cells, lines that end with CR LF or CR, a byte order mark and blanks around numbers are taken;
+/// with semicolons between cells the decimal point may be a comma. A pipe will do. Empty when
+/// anything is wrong; then `out` says what, at most 20 mistakes:
 ///   L0001  the file cannot be read
 ///   L0701  empty file, a first line that names no columns, or a program (YAML)
 ///   L0702  a column that was asked for is not there

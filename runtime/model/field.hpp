@@ -254,7 +254,7 @@ inline Field real_column(std::string_view name, std::string_view unit, std::stri
     return f;
 }
 
-/// A column of names of an enumeration, which a file has as their numbers.
+/// A column of names of an enumeration; a file has them or their numbers.
 inline Field name_column(std::string_view name, std::span<const std::string_view> names,
                          std::string_view doc) {
     Field f;

@@ -172,7 +172,11 @@ void set_table_from_file(const Resolving& to, Instance& block, const TableField&
     if (path && !std::filesystem::is_regular_file(*path, unknown))
         return to.read.fail(code::file_cannot_be_read, value,
                             fmt::format("there is no file '{}'", *path));
-    const auto csv = path ? read_csv(*path, to.read.diagnostics()) : std::nullopt;
+    CsvOptions options;
+    for (const Field& column : table.columns)
+        if (column.type == Type::enumeration)
+            options.names[std::string(column.name)] = {column.names.begin(), column.names.end()};
+    const auto csv = path ? read_csv(*path, to.read.diagnostics(), options) : std::nullopt;
     if (!csv || !has_room(to, table, value, csv->rows)) return;
     const std::size_t needed = table.needed > 0 ? table.needed : table.columns.size();
     for (std::size_t i = 0; i < table.columns.size(); ++i) {

@@ -83,6 +83,18 @@ TEST_CASE("an empty cell is a missing value") {
     CHECK(std::isnan(values(read_text("x\n\n1\n"), "x")[0]));
 }
 
+TEST_CASE("cells of a column with names may be one of them, or its number") {
+    const CsvOptions options{.names = {{"curve", {"line", "arc"}}}};
+    CHECK(values(read_text("x,curve\n1,arc\n2,\"line\"\n3,1\n", options), "curve") ==
+          Values{1, 0, 1});
+    CHECK(std::isnan(values(read_text("x,curve\n1,\n", options), "curve")[0]));
+    CHECK(read_text("x,curve\n1,bow\n", options).said ==
+          "t.csv:2:3: error[L0705]: 'bow' in column 'curve' is not a number\n"
+          "   2 | 1,bow\n"
+          "     |   ^~~ write line, arc\n");
+    CHECK_FALSE(read_text("x,curve\narc,arc\n", options).said.empty());
+}
+
 TEST_CASE("a header alone is a table of no rows") {
     CHECK(values(read_text("x,y\n"), "y").empty());
     CHECK(values(read_text("x,y"), "y").empty());
