@@ -26,6 +26,7 @@ blocks:
     set_position: shaft.position
     set_velocity: shaft.velocity
     kv: 20 1/s
+  cam: {type: cam_table, task: servo, points: [[0 mm, 0 mm, 1], [10 mm, 20 mm, 3]]}
 run: {for: 1 s}
 """
 

@@ -29,34 +29,34 @@ std::span<CamPoint> first_of(CamTable::Points& points) {
 std::span<const Field> WrittenCam::fields() {
     using W = WrittenCam;
     static const Field table[] = {
-        input("Action", &W::action, "", "of this scan").one_of(action_names),
-        input("Row", &W::row, "", "of the point, from 1 on; when the cam is complete: of the last"),
-        input("Given", &W::given, "", "0: the position, 1: Velocity too, 2: Acceleration too")
+        input("action", &W::action, "", "of this scan").one_of(action_names),
+        input("row", &W::row, "", "of the point, from 1 on; when the cam is complete: of the last"),
+        input("given", &W::given, "", "0: the position, 1: velocity too, 2: acceleration too")
             .at_least(0)
             .at_most(2),
-        input("Master", &W::point, &CamPoint::x, "", "position of the master"),
-        input("Slave", &W::point, &CamPoint::y, "", "position of the slave"),
-        input("Velocity", &W::velocity, "", "slave per master"),
-        input("Acceleration", &W::acceleration, "", "of the slave per master, twice"),
-        input("Curve", &W::point, &CamPoint::curve, "", "to the next point")
+        input("master", &W::point, &CamPoint::x, "", "position of the master"),
+        input("slave", &W::point, &CamPoint::y, "", "position of the slave"),
+        input("velocity", &W::velocity, "", "slave per master"),
+        input("acceleration", &W::acceleration, "", "of the slave per master, twice"),
+        input("curve", &W::point, &CamPoint::curve, "", "to the next point")
             .one_of(cam_curve_names),
-        input("Of", &W::other, "", "CamTableID of the cam that is looked at; 0: its own"),
-        input("Periodic", &W::periodic, "", "the cam begins anew at its end"),
-        input("MasterAbsolute", &W::master_absolute, "", "as of MC_CamTableSelect"),
-        input("SlaveAbsolute", &W::slave_absolute, "", "as of MC_CamTableSelect"),
-        output("Done", &W::done, "", "what the scan was to do is done"),
-        output("Error", &W::error, "", "it cannot be done"),
-        output("ErrorID", &W::error_id, "", "why").one_of(motion_error_names),
-        output("CamTableID", &W::id, "", "for MC_CamIn; 0: there is no cam yet"),
-        output("SlaveAt", &W::y, "", "position of the slave at Master"),
-        output("VelocityAt", &W::slope, "", "slave per master there"),
-        output("AccelerationAt", &W::bend, "", "of the slave per master, twice, there"),
-        output("First", &W::first, "", "position of the master at the beginning"),
-        output("Last", &W::last, "", "position of the master at the end"),
-        output("Least", &W::least, "", "position of the slave on the whole cam"),
-        output("Greatest", &W::greatest, "", "position of the slave on the whole cam"),
-        output("GreatestVelocity", &W::greatest_slope, "", "size of slave per master"),
-        output("GreatestAcceleration", &W::greatest_bend, "", "size of that per master"),
+        input("cam", &W::other, "", "CamTableID of the cam that is looked at; 0: its own"),
+        input("periodic", &W::periodic, "", "the cam begins anew at its end"),
+        input("master_absolute", &W::master_absolute, "", "as of MC_CamTableSelect"),
+        input("slave_absolute", &W::slave_absolute, "", "as of MC_CamTableSelect"),
+        output("done", &W::done, "", "what the scan was to do is done"),
+        output("error", &W::error, "", "it cannot be done"),
+        output("error_id", &W::error_id, "", "why").one_of(motion_error_names),
+        output("cam_table_id", &W::id, "", "for MC_CamIn; 0: there is no cam yet"),
+        output("slave_at", &W::y, "", "position of the slave at `master`"),
+        output("velocity_at", &W::slope, "", "slave per master there"),
+        output("acceleration_at", &W::bend, "", "of the slave per master, twice, there"),
+        output("first", &W::first, "", "position of the master at the beginning"),
+        output("last", &W::last, "", "position of the master at the end"),
+        output("least", &W::least, "", "position of the slave on the whole cam"),
+        output("greatest", &W::greatest, "", "position of the slave on the whole cam"),
+        output("greatest_velocity", &W::greatest_slope, "", "size of slave per master"),
+        output("greatest_acceleration", &W::greatest_bend, "", "size of that per master"),
     };
     return table;
 }

@@ -97,6 +97,15 @@ Json bare_number(const Field& field) {
     return out;
 }
 
+/// Whether it is, or may come to be by its parameters, a number without a unit.
+bool may_be_plain(const BlockType& type, const Field& field) {
+    const auto is_none = [](const std::string& text) {
+        const auto unit = Unit::parse(text);
+        return text.empty() || (unit && is_plain(*unit));
+    };
+    return std::ranges::any_of(possible_units(type, std::string(field.unit)), is_none);
+}
+
 /// The forms of a constant for `field`.
 Json::array_t constants(const BlockType& type, const Field& field) {
     if (field.direction == Direction::in_out) return {reference("name")};
@@ -105,8 +114,7 @@ Json::array_t constants(const BlockType& type, const Field& field) {
     static const Unit second = *Unit::parse("s");
     Json::array_t forms;
     const auto units = possible_units(type, std::string(field.unit));
-    if (std::ranges::any_of(units, [](const auto& unit) { return is_plain(*Unit::parse(unit)); }))
-        forms.push_back(bare_number(field));
+    if (may_be_plain(type, field)) forms.push_back(bare_number(field));
     forms.push_back(reference("quantity"));
     if (Unit::parse(units.front())->same_dimension(second)) forms.push_back(reference("interval"));
     return forms;
@@ -129,7 +137,7 @@ std::string description(const BlockType& type, const Field& field) {
                            : "default " + describe(value, field.type, field.names, unit));
 }
 
-Json rows(const TableField& table) {
+Json rows(const BlockType& type, const TableField& table) {
     Json::array_t columns;
     for (const Field& column : table.columns) {
         Json::array_t forms{reference("quantity"), reference("parameter")};
@@ -137,7 +145,8 @@ Json rows(const TableField& table) {
             Json::array_t names(column.names.begin(), column.names.end());
             forms = {keyword("enum", names), reference("parameter")};
         }
-        if (column.names.empty() && column.unit.empty()) forms.push_back(bare_number(column));
+        if (column.names.empty() && may_be_plain(type, column))
+            forms.push_back(bare_number(column));
         columns.push_back(described(column.doc, any_of(forms)));
     }
     Json row = of_type("array");
@@ -162,7 +171,8 @@ Json block_type(const BlockType& type, const Json& common) {
         properties[std::string(field.name)] = described(description(type, field), any_of(forms));
         if (field.required) needed.push_back(field.name);
     }
-    for (const TableField& table : type.tables) properties[std::string(table.name)] = rows(table);
+    for (const TableField& table : type.tables)
+        properties[std::string(table.name)] = rows(type, table);
     Json out = of_type("object");
     out["properties"] = std::move(properties);
     out["required"] = std::move(needed);

@@ -219,11 +219,12 @@ TEST_CASE("a retained axis stands where it was when the power went", "[retain]")
     const Folder folder;
     write(folder / "axis.yaml", R"(
 lineshaft: 1
+parameters: {go: true}
 tasks: {main: {every: 1 ms}}
 blocks:
   x: {type: axis, task: main, start_position: 5 mm}
   go: {type: MC_MoveVelocity, task: main, Axis: x, Execute: inputs.go, Velocity: 10 mm/s}
-inputs: {go: true}
+inputs: {go: $go}
 retain: [x, go]
 run: {for: 1 s}
 )");
@@ -231,7 +232,7 @@ run: {for: 1 s}
     for (const char* go : {"true", "false", "true"}) {
         Diagnostics out;
         LoadOptions options;
-        options.settings = {{"inputs.go", go}};
+        options.settings = {{"go", go}};
         auto loaded = load_program(folder / "axis.yaml", options, standard_blocks(), out);
         INFO(out.render());
         REQUIRE(loaded);
