@@ -201,9 +201,9 @@ def check_chart_flags():
     write("chart/chart.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nsources: ALL.EXP\nblocks: {p: {type: PLC_PRG, task: t, "
           "reset: inputs.reset, init: inputs.init}}\ninputs: {reset: false, init: false}\nrun: {for: 30 ms}\nstimulus:\n"
           "  - {at: 10 ms, set: {inputs.reset: true}}\n  - {at: 12 ms, set: {inputs.reset: false}}\n"
-          "  - {at: 20 ms, set: {inputs.init: true}}\nexpect:\n  - {at: 9 ms, p.begun: 3}\n  - {at: 9 ms, p.runs: 3}\n"
-          "  - {at: 11 ms, p.begun: 5}\n  - {at: 11 ms, p.runs: 3}\n  - {at: 19 ms, p.runs: 6}\n  - {at: end, p.runs: 6}\n"
-          "  - {at: 19 ms, p.begun: 8}\n  - {at: end, p.begun: 8}\n")
+          "  - {at: 20 ms, set: {inputs.init: true}}\nexpect:\n  - {at: 9 ms, p.begun: 4}\n  - {at: 9 ms, p.runs: 4}\n"
+          "  - {at: 11 ms, p.begun: 6}\n  - {at: 11 ms, p.runs: 4}\n  - {at: 19 ms, p.runs: 8}\n  - {at: end, p.runs: 8}\n"
+          "  - {at: 19 ms, p.begun: 10}\n  - {at: end, p.begun: 10}\n")
     run("run", "chart/chart.yaml")
 
 
@@ -340,6 +340,23 @@ def check_mapp():
           + "".join(f"  - {{at: end, Program.{name}: {value}}}\n" for name, value in
                     (("small", 97), ("big", 65), ("Stop", "true"), ("index", 1), ("wait", "1.5 s"))))
     run("run", "mapp.yaml", "--quiet")
+
+
+def check_headers():
+    """PLCopen XML of CODESYS has its texts, counters, edges; that of others, Beremiz or OpenPLC, the standard's."""
+    body = ('<types><dataTypes/><pous><pou name="P" pouType="program"><interface><localVars>'
+            '<variable name="text"><type><string/></type></variable><variable name="counter"><type><derived name="CTD"/></type></variable>'
+            '<variable name="size"><type><INT/></type></variable><variable name="falls"><type><derived name="F_TRIG"/></type></variable>'
+            '<variable name="pulses"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
+            "counter(CD := TRUE);\nsize := SIZEOF(text);\nfalls(CLK := FALSE);\nIF falls.Q THEN pulses := pulses + 1; END_IF;"
+            "</xhtml></ST></body></pou></pous></types><instances><configurations/></instances></project>")
+    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (-1, 255, 1))):
+        write(f"{product}.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
+              f'<fileHeader companyName="" productName="{product}" productVersion="1" creationDateTime="2024-01-01T00:00:00"/>' + body)
+        run("new", product, "--from", f"{product}.xml")
+        write(f"{product}.yaml", (work / f"{product}.yaml").read_text() + "expect:\n" + "".join(
+            f"  - {{at: end, P.{name}: {number}}}\n" for name, number in zip(("counter.CV", "size", "pulses"), value)))
+        run("run", "--quiet", f"{product}.yaml")
 
 
 def check_softmotion():
@@ -718,6 +735,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_headers()
     check_mapp()
     check_softmotion()
     check_local_types()
