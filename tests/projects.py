@@ -166,6 +166,15 @@ def check_configuration():
                  "Slow: {type: Slow, task: idle}"):
         assert line in text, text
     run("run", "--quiet", "configured.yaml")
+    write("several.st", "PROGRAM Belt VAR_INPUT speed : INT; on : BOOL; END_VAR VAR_OUTPUT way : INT; END_VAR "
+          "IF on THEN way := way + speed; END_IF; END_PROGRAM\nCONFIGURATION c\n  RESOURCE r ON PLC\n"
+          "    TASK quick(INTERVAL := T#5ms, PRIORITY := 0);\n    PROGRAM left WITH quick : Belt(speed := 2, on := TRUE);\n"
+          "    PROGRAM right WITH quick : Belt(speed := -3, on := TRUE);\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    run("new", "several", "--from", "several.st")
+    text = (work / "several.yaml").read_text()
+    for line in ("left: {type: Belt, task: quick, speed: 2, on: true}", "right: {type: Belt, task: quick, speed: -3, on: true}"):
+        assert line in text, text
+    run("run", "--quiet", "several.yaml")
 
 
 CHART = """PROGRAM PLC_PRG
@@ -357,6 +366,31 @@ def check_headers():
         write(f"{product}.yaml", (work / f"{product}.yaml").read_text() + "expect:\n" + "".join(
             f"  - {{at: end, P.{name}: {number}}}\n" for name, number in zip(("counter.CV", "size", "pulses"), value)))
         run("run", "--quiet", f"{product}.yaml")
+
+
+def check_task_classes():
+    """B&R: Cpu.sw says which program is in which task class, Hardware.hw how often that runs; one that is disabled does not."""
+    for name in ("Fast", "Slow", "Off"):
+        write(f"Classes/Logical/Line/{name}/IEC.prg", '<?xml version="1.0"?>\n<Program xmlns="http://br-automation.co.at/AS/Program"><Files>'
+              "<File>Variables.var</File><File>Main.st</File></Files></Program>\n")
+        write(f"Classes/Logical/Line/{name}/Variables.var", "VAR\n\tn : UINT;\n\tname : STRING;\n\tcounter : CTD;\nEND_VAR\n")
+        write(f"Classes/Logical/Line/{name}/Main.st", "PROGRAM _CYCLIC\n\tn := n + 1;\n\tcounter(CD := n > 3);\nEND_PROGRAM\n")
+    for cpu in ("one/X20", "two/X20"):
+        write(f"Classes/Physical/{cpu}/Cpu.sw", '<?xml version="1.0" encoding="utf-8"?>\n<?AutomationStudio FileVersion="4.9"?>\n'
+              '<SwConfiguration CpuAddress="SL1" xmlns="http://br-automation.co.at/AS/SwConfiguration">\n'
+              '  <TaskClass Name="Cyclic#1">\n    <Task Name="Fast" Source="Line.Fast.prg" Memory="UserROM" Language="IEC" />\n  </TaskClass>\n'
+              '  <TaskClass Name="Cyclic#2" />\n  <TaskClass Name="Cyclic#4">\n    <Task Name="Slow" Source="Line.Slow.prg" Language="IEC" />\n'
+              '    <Task Name="Off" Source="Line.Off.prg" Language="IEC" Disabled="true" />\n  </TaskClass>\n</SwConfiguration>\n')
+    write("Classes/Physical/one/Hardware.hw", '<?xml version="1.0" encoding="utf-8"?>\n<Hardware xmlns="http://br-automation.co.at/AS/Hardware">\n'
+          '  <Module Name="X20" Type="X20CP1685">\n    <Parameter ID="Cyclic1Duration" Value="2000" />\n  </Module>\n</Hardware>\n')
+    run("new", "classes", "--from", "Classes")
+    text = (work / "classes.yaml").read_text()
+    for line in ("Cyclic_1: {every: 2 ms, priority: 2}", "Cyclic_4: {every: 100 ms, priority: 1}", "Fast: {type: Fast, task: Cyclic_1}",
+                 "Slow: {type: Slow, task: Cyclic_4}"):
+        assert line in text, text
+    assert "Off: {" not in text, text
+    write("classes.yaml", text + "expect:\n  - {at: end, Fast.n: 501}\n  - {at: end, Slow.n: 11}\n  - {at: end, Fast.counter.CV: 0}\n")
+    run("run", "--quiet", "classes.yaml")
 
 
 def check_softmotion():
@@ -735,6 +769,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_task_classes()
     check_headers()
     check_mapp()
     check_softmotion()
