@@ -166,6 +166,15 @@ def check_configuration():
                  "Slow: {type: Slow, task: idle}"):
         assert line in text, text
     run("run", "--quiet", "configured.yaml")
+    write("several.st", "PROGRAM Belt VAR_INPUT speed : INT; on : BOOL; END_VAR VAR_OUTPUT way : INT; END_VAR "
+          "IF on THEN way := way + speed; END_IF; END_PROGRAM\nCONFIGURATION c\n  RESOURCE r ON PLC\n"
+          "    TASK quick(INTERVAL := T#5ms, PRIORITY := 0);\n    PROGRAM left WITH quick : Belt(speed := 2, on := TRUE);\n"
+          "    PROGRAM right WITH quick : Belt(speed := -3, on := TRUE);\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    run("new", "several", "--from", "several.st")
+    text = (work / "several.yaml").read_text()
+    for line in ("left: {type: Belt, task: quick, speed: 2, on: true}", "right: {type: Belt, task: quick, speed: -3, on: true}"):
+        assert line in text, text
+    run("run", "--quiet", "several.yaml")
 
 
 CHART = """PROGRAM PLC_PRG
@@ -201,9 +210,9 @@ def check_chart_flags():
     write("chart/chart.yaml", "lineshaft: 1\ntasks: {t: {every: 1 ms}}\nsources: ALL.EXP\nblocks: {p: {type: PLC_PRG, task: t, "
           "reset: inputs.reset, init: inputs.init}}\ninputs: {reset: false, init: false}\nrun: {for: 30 ms}\nstimulus:\n"
           "  - {at: 10 ms, set: {inputs.reset: true}}\n  - {at: 12 ms, set: {inputs.reset: false}}\n"
-          "  - {at: 20 ms, set: {inputs.init: true}}\nexpect:\n  - {at: 9 ms, p.begun: 3}\n  - {at: 9 ms, p.runs: 3}\n"
-          "  - {at: 11 ms, p.begun: 5}\n  - {at: 11 ms, p.runs: 3}\n  - {at: 19 ms, p.runs: 6}\n  - {at: end, p.runs: 6}\n"
-          "  - {at: 19 ms, p.begun: 8}\n  - {at: end, p.begun: 8}\n")
+          "  - {at: 20 ms, set: {inputs.init: true}}\nexpect:\n  - {at: 9 ms, p.begun: 4}\n  - {at: 9 ms, p.runs: 4}\n"
+          "  - {at: 11 ms, p.begun: 6}\n  - {at: 11 ms, p.runs: 4}\n  - {at: 19 ms, p.runs: 8}\n  - {at: end, p.runs: 8}\n"
+          "  - {at: 19 ms, p.begun: 10}\n  - {at: end, p.begun: 10}\n")
     run("run", "chart/chart.yaml")
 
 
@@ -340,6 +349,48 @@ def check_mapp():
           + "".join(f"  - {{at: end, Program.{name}: {value}}}\n" for name, value in
                     (("small", 97), ("big", 65), ("Stop", "true"), ("index", 1), ("wait", "1.5 s"))))
     run("run", "mapp.yaml", "--quiet")
+
+
+def check_headers():
+    """PLCopen XML of CODESYS has its texts, counters, edges; that of others, Beremiz or OpenPLC, the standard's."""
+    body = ('<types><dataTypes/><pous><pou name="P" pouType="program"><interface><localVars>'
+            '<variable name="text"><type><string/></type></variable><variable name="counter"><type><derived name="CTD"/></type></variable>'
+            '<variable name="size"><type><INT/></type></variable><variable name="falls"><type><derived name="F_TRIG"/></type></variable>'
+            '<variable name="pulses"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
+            "counter(CD := TRUE);\nsize := SIZEOF(text);\nfalls(CLK := FALSE);\nIF falls.Q THEN pulses := pulses + 1; END_IF;"
+            "</xhtml></ST></body></pou></pous></types><instances><configurations/></instances></project>")
+    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (-1, 255, 1))):
+        write(f"{product}.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
+              f'<fileHeader companyName="" productName="{product}" productVersion="1" creationDateTime="2024-01-01T00:00:00"/>' + body)
+        run("new", product, "--from", f"{product}.xml")
+        write(f"{product}.yaml", (work / f"{product}.yaml").read_text() + "expect:\n" + "".join(
+            f"  - {{at: end, P.{name}: {number}}}\n" for name, number in zip(("counter.CV", "size", "pulses"), value)))
+        run("run", "--quiet", f"{product}.yaml")
+
+
+def check_task_classes():
+    """B&R: Cpu.sw says which program is in which task class, Hardware.hw how often that runs; one that is disabled does not."""
+    for name in ("Fast", "Slow", "Off"):
+        write(f"Classes/Logical/Line/{name}/IEC.prg", '<?xml version="1.0"?>\n<Program xmlns="http://br-automation.co.at/AS/Program"><Files>'
+              "<File>Variables.var</File><File>Main.st</File></Files></Program>\n")
+        write(f"Classes/Logical/Line/{name}/Variables.var", "VAR\n\tn : UINT;\n\tname : STRING;\n\tcounter : CTD;\nEND_VAR\n")
+        write(f"Classes/Logical/Line/{name}/Main.st", "PROGRAM _CYCLIC\n\tn := n + 1;\n\tcounter(CD := n > 3);\nEND_PROGRAM\n")
+    for cpu in ("one/X20", "two/X20"):
+        write(f"Classes/Physical/{cpu}/Cpu.sw", '<?xml version="1.0" encoding="utf-8"?>\n<?AutomationStudio FileVersion="4.9"?>\n'
+              '<SwConfiguration CpuAddress="SL1" xmlns="http://br-automation.co.at/AS/SwConfiguration">\n'
+              '  <TaskClass Name="Cyclic#1">\n    <Task Name="Fast" Source="Line.Fast.prg" Memory="UserROM" Language="IEC" />\n  </TaskClass>\n'
+              '  <TaskClass Name="Cyclic#2" />\n  <TaskClass Name="Cyclic#4">\n    <Task Name="Slow" Source="Line.Slow.prg" Language="IEC" />\n'
+              '    <Task Name="Off" Source="Line.Off.prg" Language="IEC" Disabled="true" />\n  </TaskClass>\n</SwConfiguration>\n')
+    write("Classes/Physical/one/Hardware.hw", '<?xml version="1.0" encoding="utf-8"?>\n<Hardware xmlns="http://br-automation.co.at/AS/Hardware">\n'
+          '  <Module Name="X20" Type="X20CP1685">\n    <Parameter ID="Cyclic1Duration" Value="2000" />\n  </Module>\n</Hardware>\n')
+    run("new", "classes", "--from", "Classes")
+    text = (work / "classes.yaml").read_text()
+    for line in ("Cyclic_1: {every: 2 ms, priority: 2}", "Cyclic_4: {every: 100 ms, priority: 1}", "Fast: {type: Fast, task: Cyclic_1}",
+                 "Slow: {type: Slow, task: Cyclic_4}"):
+        assert line in text, text
+    assert "Off: {" not in text, text
+    write("classes.yaml", text + "expect:\n  - {at: end, Fast.n: 501}\n  - {at: end, Slow.n: 11}\n  - {at: end, Fast.counter.CV: 0}\n")
+    run("run", "--quiet", "classes.yaml")
 
 
 def check_softmotion():
@@ -718,6 +769,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_task_classes()
+    check_headers()
     check_mapp()
     check_softmotion()
     check_local_types()

@@ -9,7 +9,7 @@ namespace lineshaft {
 
 /// Edge detection, IEC 61131-3:2013, table 44: q is true for one scan per rising (R_TRIG) or
 /// falling (F_TRIG) edge of `clk`. As there, before the first scan the memory is clear: R_TRIG with
-/// clk true, and F_TRIG with clk false, give one pulse at the first scan (F_TRIG in Siemens' SCL
+/// clk true, and F_TRIG with clk false, give one pulse at the first scan (F_TRIG in some languages
 /// does not).
 template <bool falling>
 struct Edge {

@@ -135,7 +135,7 @@ std::vector<WholeProject> read_projects(const std::string& path,
 std::vector<std::string> task_programs(const projects::Project& project) {
     std::vector<std::string> programs;
     for (const projects::ProjectTask& task : project.tasks)
-        for (const projects::Name& program : task.programs) programs.push_back(program.text);
+        for (const projects::TaskProgram& program : task.programs) programs.push_back(program.text);
     return programs;
 }
 

@@ -35,11 +35,26 @@ ProjectTask read_task(st::Cursor& p) {
     return made;
 }
 
-/// `PROGRAM main WITH slow : Main;`
+/// `Main(limit := 5, done => lamp)`: what is given is a literal, as a program's file has it.
+void read_arguments(st::Cursor& p, TaskProgram& to) {
+    if (!p.accept(Word::open)) return;
+    while (!p.is(Word::close) && !p.is(Word::semicolon) && !p.is(Word::end_of_file)) {
+        const Token key = p.take();
+        if (!p.accept(Word::assign)) continue;
+        const st::Place begin = p.here().place;
+        while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
+        const std::string value = lower(begin.to(p.last().place).text());
+        const bool is_number = value.find_first_not_of("-.0123456789") == value.npos;
+        if (is_number || value == "true" || value == "false")
+            to.given.emplace_back(key.text, value);
+    }
+}
+
+/// `PROGRAM main WITH slow : Main(limit := 5);`
 void read_program(st::Cursor& p, std::vector<ProjectTask>& tasks) {
     p.take();
     while (p.is(Word::retain_) || p.is(Word::non_retain_)) p.take();
-    p.take();
+    const std::string instance(p.take().text);
     if (!p.says("with")) return;
     p.take();
     const Token task = p.take();
@@ -48,7 +63,9 @@ void read_program(st::Cursor& p, std::vector<ProjectTask>& tasks) {
         return st::same_name(one.name.text, task.text);
     };
     const auto found = std::ranges::find_if(tasks, is_its);
-    if (found != tasks.end()) found->programs.push_back(name_of(p.take()));
+    if (found == tasks.end()) return;
+    TaskProgram& program = found->programs.emplace_back(TaskProgram{name_of(p.take()), instance});
+    read_arguments(p, program);
 }
 
 }  // namespace

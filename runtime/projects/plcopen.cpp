@@ -16,6 +16,13 @@ namespace lineshaft::projects {
 
 namespace {
 
+/// What it writes beside the standard's is named by 3S. Without a header it may be a part of such.
+bool is_of_codesys(const XmlFile& file) {
+    const bool has_header = !file.root().child("fileHeader").empty();
+    return !has_header || file.text().find("3s-software") != std::string_view::npos ||
+           file.text().find("CODESYS") != std::string_view::npos;
+}
+
 /// One project of PLCopen XML.
 class PlcopenProject {
   public:
@@ -45,7 +52,9 @@ class PlcopenProject {
     void add(pugi::xml_node element, void (PlcopenText::*add_to)(pugi::xml_node)) {
         PlcopenText text(file_, declared_, to_.out);
         (text.*add_to)(element);
-        to_.project.add(text.finish(element));
+        SourceFile made = *text.finish(element);
+        if (is_of_matiec_) made.read_as = ".matiec";
+        to_.project.add(std::make_shared<const SourceFile>(std::move(made)));
     }
 
     void globals_of(pugi::xml_node owner) {
@@ -112,6 +121,7 @@ class PlcopenProject {
     const XmlFile& file_;
     const DeclaredTypes declared_;
     const Reading& to_;
+    const bool is_of_matiec_ = !is_of_codesys(file_);
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "runtime/projects/simatic_ml.hpp"
 #include "runtime/projects/simatic_sd.hpp"
 #include "runtime/projects/solution.hpp"
+#include "runtime/projects/task_classes.hpp"
 #include "runtime/projects/twincat.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
@@ -164,7 +165,7 @@ void Project::add(std::shared_ptr<const SourceFile> source) {
 
 bool is_source(const fs::path& file) {
     const Form* form = form_of(file);
-    if (is_mapp_configuration(file)) return true;
+    if (is_mapp_configuration(file) || is_software_of_cpu(file)) return true;
     if (is_of_hardware(file)) return false;
     if (form && form->read == read_xml) return is_plcopen(file) || is_simatic_ml(file);
     if (form && form->read == read_iec_program) return is_iec_program(file);
@@ -192,6 +193,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
 void read_sources(const Reading& to, const std::string& path, const Mark& where) {
     const Form* form = form_of(path);
     if (is_apax(path)) return read_apax(to, path, where);
+    if (is_software_of_cpu(path)) return read_task_classes(to, path, where);
     if (is_mapp_configuration(path)) return read_mapp_configuration(to, path, where);
     return form ? form->read(to, path, where) : read_text(to, path, where);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "runtime/source/diagnostic.hpp"
@@ -19,12 +20,18 @@ struct Name {
     Mark mark;
 };
 
+/// A program that a task runs. A CONFIGURATION names its instance, and gives inputs their values.
+struct TaskProgram : Name {
+    std::string instance = {};
+    std::vector<std::pair<std::string, std::string>> given = {};
+};
+
 /// A cyclic task.
 struct ProjectTask {
     Name name;
     std::int64_t every = 0;     ///< [ns] 0: not said, or started by an event
     std::int64_t priority = 0;  ///< as the project counts: the smallest is the most urgent
-    std::vector<Name> programs = {};
+    std::vector<TaskProgram> programs = {};
 };
 
 /// What a project brings along.

@@ -23,14 +23,14 @@ constexpr std::size_t most_signals = 8;
 /// A block that is one of the program's, and the task that scans it.
 struct NewBlock {
     std::string name, type, task;
-    std::vector<std::pair<std::string, std::string>> axes = {};  ///< that are given to it, by path
-    bool called = false;                                         ///< by the sources of others
+    std::vector<std::pair<std::string, std::string>> given = {};  ///< axes and values, by path
+    bool called = false;                                          ///< by the sources of others
 };
 
 struct NewTask {
     std::string name;
     std::int64_t every, priority;
-    std::vector<projects::Name> programs;
+    std::vector<projects::TaskProgram> programs;
 };
 
 /// A name of a task as a program may have it.
@@ -70,21 +70,32 @@ bool is_program(const BlockType& kind) {
 /// The programs that tasks call; where none says so, all of them in the first task.
 std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks) {
     std::vector<NewBlock> blocks;
-    const auto add = [&](const BlockType& kind, const std::string& task) {
+    const auto is_one_of_several = [&](const projects::TaskProgram& program) {
+        std::ptrdiff_t count = 0;
+        for (const NewTask& task : tasks)
+            count += std::ranges::count_if(task.programs, [&](const projects::TaskProgram& other) {
+                return lower(other.text) == lower(program.text);
+            });
+        return count > 1 && !program.instance.empty();
+    };
+    const auto add = [&](std::string_view given, const BlockType& kind, const std::string& task) {
         std::string name;
-        for (const char c : kind.name) name += is_letter(c) || is_digit(c) ? c : '_';
+        for (const char c : given) name += is_letter(c) || is_digit(c) ? c : '_';
         if (is_digit(name.front())) name.insert(0, "_");
         for (const NewBlock& other : blocks)
             if (other.name == name) name += "_" + task;
         blocks.push_back({name, std::string(kind.name), task});
     };
     for (const NewTask& task : tasks)
-        for (const projects::Name& named : task.programs)
-            for (const BlockType& kind : library.kinds())
-                if (is_program(kind) && lower(kind.name) == lower(named.text)) add(kind, task.name);
+        for (const projects::TaskProgram& program : task.programs)
+            for (const BlockType& kind : library.kinds()) {
+                if (!is_program(kind) || lower(kind.name) != lower(program.text)) continue;
+                add(is_one_of_several(program) ? program.instance : kind.name, kind, task.name);
+                blocks.back().given = program.given;
+            }
     if (blocks.empty())
         for (const BlockType& kind : library.kinds())
-            if (is_program(kind)) add(kind, tasks.front().name);
+            if (is_program(kind)) add(kind.name, kind, tasks.front().name);
     return blocks;
 }
 
@@ -118,7 +129,7 @@ std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>&
             if (!is_axis) continue;
             std::string name = plain_name(fmt::format("{}_{}", owner.name, field.name));
             if (name.ends_with('_')) name.pop_back();
-            owner.axes.emplace_back(field.name, name);
+            owner.given.emplace_back(field.name, name);
             axes.push_back({name, "axis", owner.task});
         }
     }
@@ -127,8 +138,8 @@ std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>&
 
 void keep_those_with_axes(const st::Library& library, std::vector<NewBlock>& blocks) {
     axes_of(library, blocks);
-    std::erase_if(blocks, [](const NewBlock& block) { return block.axes.empty(); });
-    for (NewBlock& block : blocks) block.axes.clear();
+    std::erase_if(blocks, [](const NewBlock& block) { return block.given.empty(); });
+    for (NewBlock& block : blocks) block.given.clear();
 }
 
 /// Lists of globals that keep axes, in the first task.
@@ -188,9 +199,9 @@ std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBloc
     for (const NewBlock& block : blocks) {
         text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
         if (block.called) text += ", called: true";
-        for (const auto& [path, axis] : block.axes) {
+        for (const auto& [path, value] : block.given) {
             const std::string_view mark = path.find('[') == path.npos ? "" : "\"";
-            text += fmt::format(", {0}{1}{0}: {2}", mark, path, axis);
+            text += fmt::format(", {0}{1}{0}: {2}", mark, path, value);
         }
         text += "}\n";
     }

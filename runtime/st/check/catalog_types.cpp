@@ -84,15 +84,17 @@ const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
 
 }  // namespace
 
-const Type* standard_type(Checking& c, std::string_view name, bool in_scl) {
+const Type* standard_type(Checking& c, std::string_view name, Vendor vendor) {
     const std::string_view wanted = standard_type_name(name);
-    const Beginning* beginning = in_scl ? find_beginning(wanted) : nullptr;
-    auto& known = beginning ? c.catalog_types_of_scl : c.catalog_types;
+    const Beginning* beginning = find_beginning(wanted, vendor);
+    auto& known = beginning ? c.types_of_vendors[vendor] : c.catalog_types;
     if (const Type* type = find_in(known, name)) return type;
     if (const Type* handle = handle_type(c, wanted)) return handle;
     if (const Type* number = wanted == name ? nullptr : find_elementary(wanted)) return number;
-    const NamedKind named = find_kind(c.catalog, wanted);
+    NamedKind named = find_kind(c.catalog, wanted);
     if (!named.kind) return nullptr;
+    const bool says_type = beginning && named.data_type && beginning->part == named.data_type->name;
+    if (says_type) named.number = static_cast<std::size_t>(beginning->value);
     const BlockType& kind = *named.kind;
     Type& type = c.make_type(Kind::standard, upper(name));
     type.standard = &kind;
@@ -107,7 +109,7 @@ const Type* standard_type(Checking& c, std::string_view name, bool in_scl) {
     }
     if (named.data_type)
         type.presets.push_back({named.data_type->name, {.integer = Wide(named.number)}});
-    if (beginning)
+    if (beginning && !says_type)
         type.presets.push_back(
             {beginning->part,
              {.integer = beginning->value, .real = static_cast<double>(beginning->value)}});

@@ -201,8 +201,13 @@ std::string_view fired_name(ChartWriter& w, std::size_t number) {
     return w.part_name("transition", std::to_string(number + 1));
 }
 
-/// All conditions before anything changes, then what is left, then what is entered.
-void write_evolution(ChartWriter& w, const Chart& chart) {
+Block joined(Block first, const Block& second) {
+    first.insert(first.end(), second.begin(), second.end());
+    return first;
+}
+
+/// All conditions; given back what they change: what is left, then what is entered.
+Block write_conditions(ChartWriter& w, const Chart& chart) {
     const auto order = in_order(chart);
     Block leaving, entering;
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -230,8 +235,7 @@ void write_evolution(ChartWriter& w, const Chart& chart) {
         leaving.push_back(w.when(w.name(at, fired_name(w, i)), std::move(left)));
         entering.push_back(w.when(w.name(at, fired_name(w, i)), std::move(entered)));
     }
-    w.out.insert(w.out.end(), leaving.begin(), leaving.end());
-    w.out.insert(w.out.end(), entering.begin(), entering.end());
+    return joined(std::move(leaving), entering);
 }
 
 /// What the qualifier of one association asks for; null: nothing now.
@@ -311,6 +315,10 @@ Block restarted(ChartWriter& w, const Chart& chart) {
                              make_constant(w.c, w.like(at), time_type, {})));
         made.push_back(w.set(w.kept(at, at.text, "before"), w.truth(at, false)));
     }
+    for (std::size_t i = 0; i < chart.transitions.size(); ++i) {
+        const Token& at = chart.transitions[i].from.front();
+        made.push_back(w.set(w.name(at, fired_name(w, i)), w.truth(at, false)));
+    }
     for (const auto& [action, uses] : actions_of(w, chart)) {
         for (const std::string_view part : {"stored", "runs", "ran"})
             made.push_back(w.set(w.kept(action, action.text, part), w.truth(action, false)));
@@ -321,17 +329,34 @@ Block restarted(ChartWriter& w, const Chart& chart) {
     return made;
 }
 
-/// A BOOL of CODESYS that the block declares, by whose name its charts are told what to do; null:
-/// it declares none.
-Variable* flag_of_charts(const Routine& block, std::string_view name) {
+/// A variable of CODESYS that the block declares, by whose name its charts are told what to do, or
+/// tell what they are at; null: it declares none.
+Variable* flag_of_charts(const Routine& block, std::string_view name, Kind kind = Kind::boolean) {
     const auto it = block.names.find(name);
-    const bool is_flag = it != block.names.end() && it->second->type == &bool_type &&
-                         block.pou->place.dialect().is_loose;
+    const bool is_flag = it != block.names.end() && it->second->type &&
+                         it->second->type->kind == kind && block.pou->place.dialect().is_loose;
     return is_flag ? it->second : nullptr;
 }
 
-/// While SFCReset the chart stands at its initial step, and while SFCInit it runs no action either.
-Block with_flags(ChartWriter& w, const Chart& chart, Block evolution, Block actions) {
+/// SFCCurrentStep is the name of the last step that is active.
+void write_current_step(ChartWriter& w, const Chart& chart) {
+    if (!flag_of_charts(w.routine, "SFCCurrentStep", Kind::text)) return;
+    for (const ChartStep& step : chart.steps) {
+        Expression* name = make_constant(w.c, w.like(step.name), string_type,
+                                         {.text = std::string(step.name.text)});
+        w.out.push_back(
+            w.when(w.active(step.name), {w.set(w.name(step.name, "SFCCurrentStep"), name)}));
+    }
+}
+
+/// What a chart does in a scan, in this order.
+struct ChartScan {
+    Block evolution = {}, actions = {}, conditions = {};
+};
+
+/// While SFCReset the chart stands at its initial step, and while SFCInit it runs no action either;
+/// while SFCPause nothing is done.
+Block with_flags(ChartWriter& w, const Chart& chart, ChartScan scan) {
     const bool resets = flag_of_charts(w.routine, "SFCReset");
     const bool begins = flag_of_charts(w.routine, "SFCInit");
     const Token& at = chart.steps.front().name;
@@ -342,13 +367,16 @@ Block with_flags(ChartWriter& w, const Chart& chart, Block evolution, Block acti
     Block made;
     if (begins || resets) {
         made.push_back(
-            make_if(w.c, at.place, any(begins, resets), restarted(w, chart), std::move(evolution)));
+            make_if(w.c, at.place, any(begins, resets), restarted(w, chart), scan.evolution));
+        if (!scan.conditions.empty())
+            scan.conditions = {w.when(w.negated(any(begins, resets)), scan.conditions)};
     } else {
-        made = std::move(evolution);
+        made = std::move(scan.evolution);
     }
-    if (begins) actions = {w.when(w.negated(any(true, false)), std::move(actions))};
-    made.insert(made.end(), actions.begin(), actions.end());
-    return made;
+    if (begins) scan.actions = {w.when(w.negated(any(true, false)), scan.actions)};
+    made = joined(joined(std::move(made), scan.actions), scan.conditions);
+    if (!flag_of_charts(w.routine, "SFCPause")) return made;
+    return {w.when(w.negated(w.name(at, "SFCPause")), std::move(made))};
 }
 
 /// `seen` has the chart, and `routine`, if it is another, what this keeps.
@@ -397,7 +425,7 @@ void declare_charts(Checking& c, Routine& routine) {
     if (routine.owner) return;
     declare_chart(c, routine, routine);
     for (Routine* method : routine.own_methods) declare_chart(c, routine, *method);
-    for (const std::string_view flag : {"SFCInit", "SFCReset"})
+    for (const std::string_view flag : {"SFCInit", "SFCReset", "SFCPause"})
         if (Variable* variable = flag_of_charts(routine, flag);
             variable && variable->section == Section::local)
             variable->section = Section::input;  // who calls an action gives it
@@ -414,12 +442,16 @@ Block chart_statements(Checking& c, Routine& routine) {
             is_right = check_association(c, keeper, association) && is_right;
     if (!is_right) return {};
     write_times(w, chart);
-    write_evolution(w, chart);
-    Block evolution = std::exchange(w.out, {});
+    Block times = std::exchange(w.out, {});
+    const Block change = write_conditions(w, chart);
+    Block conditions = std::exchange(w.out, {});
+    write_current_step(w, chart);
     for (const auto& [action, uses] : actions_of(w, chart)) write_action(w, action, uses);
     for (const ChartStep& step : chart.steps)
         w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
-    return with_flags(w, chart, std::move(evolution), std::move(w.out));
+    if (routine.pou->place.dialect().vendor == Vendor::codesys)
+        return with_flags(w, chart, {joined(change, times), w.out, std::move(conditions)});
+    return with_flags(w, chart, {joined(joined(std::move(times), conditions), change), w.out, {}});
 }
 
 }  // namespace lineshaft::st

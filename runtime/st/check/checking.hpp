@@ -124,7 +124,7 @@ struct Checking {
     std::vector<Routine*> updates = {};  ///< of what the routine at hand names of libraries
     std::unordered_set<const Pou*> assigned_inputs = {};  ///< blocks that were warned of it
     NameMap<const Type*> catalog_types = {};
-    NameMap<const Type*> catalog_types_of_scl = {};  ///< those that begin otherwise there
+    std::map<Vendor, NameMap<const Type*>> types_of_vendors = {};  ///< that begin otherwise there
     bool has_tests = false;
     /// What __NEW makes of a type: its elements, one more of which stays as it begins, and how they
     /// are taken (blocks/libraries/__SYSTEM/memory.st).

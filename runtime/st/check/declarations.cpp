@@ -302,8 +302,9 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool is_value = takes_values(block, type);
         const Section section = is_value ? Section::input : block.section;
         const bool constant = block.constant && !is_value;
-        if (is_value && type == &string_type) type = &longer_string(c);
-        if (section == Section::in_out && type == &string_type) type = &open_string_type;
+        const bool is_unsized = type == &unsized_string(declared->name.place.dialect());
+        if (is_value && is_unsized) type = &longer_string(c);
+        if (section == Section::in_out && is_unsized) type = &open_string_type;
         const bool is_another = is_instance_of_own(routine, section, type);
         const bool is_static = section == Section::static_ || is_another;
         Variable* variable =
@@ -466,6 +467,7 @@ void collect_names(Checking& c) {
         if (routine.is_function()) continue;
         routine.type = &c.make_type(Kind::block, routine.name);
         routine.type->routine = &routine;
+        routine.type->pack = pou->name.place.dialect().most_aligned;
         if (routine.is_interface()) {
             routine.type->kind = Kind::interface;
             routine.type->slots = 1;

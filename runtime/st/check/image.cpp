@@ -7,8 +7,22 @@ namespace lineshaft::st {
 
 namespace {
 
+std::uint32_t bytes_of_size(const ImageAddress& address) {
+    return (address.bits + 7U) / 8;
+}
+
+/// As the dialect writes it.
+std::string text_in(const Dialect& dialect, ImageAddress address) {
+    if (dialect.addresses_count_sizes) address.byte /= bytes_of_size(address);
+    return text_of(address);
+}
+
 std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
-    const auto address = read_address(token.text);
+    auto address = read_address(token.text);
+    const bool is_hierarchical =
+        address && address->bits > 1 && token.text.find('.') != token.text.npos;
+    if (address && token.place.dialect().addresses_count_sizes && !is_hierarchical)
+        address->byte *= bytes_of_size(*address);
     if (!address) {
         c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
                "write the area I, Q or M, the size X, B, W, D or L, and the byte: %IX0.3, %QW4, "
@@ -94,11 +108,13 @@ void warn_of_crossing(Checking& c, const Image& image) {
     for (std::size_t i = 0; i < declared.size(); ++i)
         for (std::size_t k = i + 1; k < std::min(declared.size(), i + most_neighbours); ++k) {
             if (!cross(*declared[i], *declared[k])) continue;
+            const Dialect& dialect = declared[k]->name.place.dialect();
             c.warn(code::addresses_overlap, declared[k]->name.place,
                    fmt::format("'{}' at {} has bytes of '{}' at {}", declared[k]->text,
-                               text_of(declared[k]->address), declared[i]->text,
-                               text_of(declared[i]->address)),
-                   "addresses count bytes: behind %MW0 comes %MW2");
+                               text_in(dialect, declared[k]->address), declared[i]->text,
+                               text_in(dialect, declared[i]->address)),
+                   dialect.addresses_count_sizes ? "%MD0 has the words %MW0 and %MW1"
+                                                 : "addresses count bytes: behind %MW0 comes %MW2");
             break;
         }
 }
@@ -146,8 +162,9 @@ const Type* check_direct(Checking& c, Expression& e) {
         e.variable = *it;
         return e.variable->type;
     }
-    Variable& variable = c.make_variable(e.token, c.checked.names.emplace_back(text_of(*address)),
-                                         &type_at(*address));
+    Variable& variable =
+        c.make_variable(e.token, c.checked.names.emplace_back(text_in(e.place.dialect(), *address)),
+                        &type_at(*address));
     variable.is_direct = variable.used = true;
     put(c, variable, *address);
     e.variable = &variable;

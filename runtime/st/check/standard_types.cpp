@@ -210,7 +210,8 @@ constexpr const char* write_its_type = "write its type, as in WORD#16#FF";
 void take_wide(Checking& c, Expression*& e, const Type* expected) {
     if (!e->type->is_any() || e->type->is_real() || !e->place.dialect().is_loose) return;
     const bool is_due =
-        expected && (expected->kind == Kind::integer || expected->kind == Kind::bits);
+        expected && (expected->kind == Kind::integer || expected->kind == Kind::bits) &&
+        e->constant.integer >= smallest(*expected) && e->constant.integer <= largest(*expected);
     const bool is_long = e->constant.integer > largest(bits_type(32));
     coerce(c, e,
            is_due ? expected->plain() : integer_type(is_long ? 64 : 32, e->constant.integer < 0));

@@ -7,6 +7,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -89,11 +90,19 @@ bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
     return !made.members.empty();
 }
 
+/// `pack_mode` 0 leaves no gaps either.
+std::uint8_t pack_of(const TypeText& text) {
+    if (text.pack_mode.empty()) return text.place.dialect().most_aligned;
+    const auto said = read_integer(text.pack_mode);
+    return said && *said > 0 && *said <= 8 ? static_cast<std::uint8_t>(*said) : std::uint8_t{1};
+}
+
 const Type* resolve_structure(Checking& c, const TypeText& text) {
     const bool is_union = text.kind == TypeText::Kind::union_;
     Type& type =
         c.make_type(is_union ? Kind::union_ : Kind::structure, is_union ? "UNION" : "STRUCT");
     type.is_unnamed = true;
+    type.pack = pack_of(text);
     NameMap<Place> names;
     if (text.base.word != Word::end_of_file) inherit_members(c, text.base, type, names);
     for (const Declaration* declared : text.members) {
@@ -246,7 +255,8 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
 
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
-    if (const Type* type = find_elementary(name.text); type && !name.quoted) return type;
+    if (const Type* type = find_elementary(name.text); type && !name.quoted)
+        return type == &string_type ? &unsized_string(name.place.dialect()) : type;
     if (name.place.dialect().is_loose && !name.quoted)
         if (const Type* type = find_codesys_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
@@ -267,8 +277,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    const bool in_scl = name.place.dialect().instances_begin_as_siemens;
-    if (const Type* type = standard_type(c, bare, in_scl)) {
+    if (const Type* type = standard_type(c, bare, name.place.dialect().vendor)) {
         c.note(name.place, *type);
         return type;
     }

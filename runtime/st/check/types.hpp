@@ -17,7 +17,7 @@ const Type* resolve_declared(Checking& c, NamedType& named);
 // catalog_types.cpp
 
 /// A block of the catalogue, or a reference to one, also by the name that vendors give it; null for
-/// another name. `in_scl`: it begins as Siemens has it.
-const Type* standard_type(Checking& c, std::string_view name, bool in_scl = false);
+/// another name. It begins as the vendor has it.
+const Type* standard_type(Checking& c, std::string_view name, Vendor vendor = Vendor::none);
 
 }  // namespace lineshaft::st

@@ -119,6 +119,20 @@ void write_number(std::byte* to, T value, bool has_sign) {
 }
 
 template <class T>
+void write_real(std::byte* to, T value, bool has_point) {
+    write_number(to, value, false);
+    const std::string_view text = text_at(to);
+    const std::size_t digits = std::min(text.find_first_not_of("-0123456789"), text.size());
+    const bool is_whole = digits == text.size() || text[digits] == 'e';
+    if (!has_point || !is_whole) return;
+    constexpr std::string_view point = ".0";
+    std::byte* first = to + 8 + digits;
+    std::memmove(first + point.size(), first, text.size() - digits);
+    std::memcpy(first, point.data(), point.size());
+    set_word(to, 0, text.size() + point.size());
+}
+
+template <class T>
 T number_of_text(const std::byte* from) {
     std::string_view text = text_at(from);
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
@@ -167,8 +181,8 @@ std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
 
 template void write_number(std::byte*, std::int64_t, bool);
 template void write_number(std::byte*, std::uint64_t, bool);
-template void write_number(std::byte*, double, bool);
-template void write_number(std::byte*, float, bool);
+template void write_real(std::byte*, double, bool);
+template void write_real(std::byte*, float, bool);
 template std::uint64_t number_of_text(const std::byte*);
 template double number_of_text(const std::byte*);
 

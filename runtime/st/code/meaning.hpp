@@ -224,6 +224,10 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what);
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign = false);
 
+/// `has_point`: '12.0', '1.0e+20'.
+template <class T>
+void write_real(std::byte* to, T value, bool has_point);
+
 /// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
 /// whole number may be `16#FF`.
 template <class T>

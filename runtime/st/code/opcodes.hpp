@@ -181,8 +181,8 @@
     OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
-    OP(text_of_real, text, "rr--", write_number(target(U(a)), R(b)))                                 \
-    OP(text_of_float, text, "rr--", write_number(target(U(a)), static_cast<float>(R(b))))            \
+    OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), c != 0))                           \
+    OP(text_of_float, text, "rrn-", write_real(target(U(a)), static_cast<float>(R(b)), c != 0))      \
     OP(integer_of_text, text, "wr--", put(a, number_of_text<std::uint64_t>(target(U(b)))))            \
     OP(real_of_text, text, "wr--", put(a, number_of_text<double>(target(U(b)))))                     \
     OP(text_of_truth, text, "rr--", write_truth(target(U(a)), U(b) != 0))                          \

@@ -164,7 +164,8 @@ void add_members(Writing& w, Shape& made) {
     std::vector<ShapeMember> members;
     std::uint64_t bit = 0;
     for (const Variable* member : made.type->members) {
-        if (is_packed) bit = packed_offset(*made.type, *member, dialect);
+        bit = is_packed ? packed_offset(*made.type, *member, dialect)
+                        : 8 * aligned_behind(bit / 8, *member->type, *made.type);
         members.push_back({bit, member->slot, shape_number(w, *member->type, made.is_s7)});
         bit += 8 * bytes_of(*member->type);
     }

@@ -22,6 +22,9 @@ const Dialect automation_studio = [] {
     made.texts_have_any_length = made.commas_may_end_lists = true;
     made.dint_becomes_real = made.lreal_becomes_real = made.enumerations_are_numbers = true;
     made.programs_are_named = false;
+    made.most_aligned = 4;
+    made.text_length = 80;
+    made.vendor = Vendor::automation_studio;
     return made;
 }();
 
@@ -36,12 +39,34 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .is_loose = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
+                         .vendor = Vendor::codesys,
                          .texts_have_any_length = true,
+                         .addresses_count_sizes = true,
+                         .whole_reals_have_points = true,
+                         .most_aligned = 8,
+                         .text_length = 80,
                          .long_numbers_count_time = true,
                          .reckons_wide = true,
                          .loops_look_again = true,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true};
+
+const Dialect twincat = [] {
+    Dialect made = codesys;
+    made.addresses_count_sizes = false;
+    return made;
+}();
+
+/// PLCopen XML of Beremiz, OpenPLC and others, which MatIEC compiles: as loose as CODESYS, with the
+/// standard's blocks and texts.
+static const Dialect matiec = [] {
+    Dialect made = codesys;
+    made.vendor = Vendor::none;
+    made.whole_reals_have_points = false;
+    made.most_aligned = iec.most_aligned;
+    made.text_length = iec.text_length;
+    return made;
+}();
 
 const Dialect scl = {.sign_precedes_power = false,
                      .sets_variables_of_instances = true,
@@ -51,7 +76,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .numbers_stand_for_names = true,
                      .texts_of_integers_have_signs = true,
                      .packs_as_s7 = true,
-                     .instances_begin_as_siemens = true,
+                     .vendor = Vendor::siemens,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
                      .long_numbers_count_time = true};
@@ -67,13 +92,14 @@ const Dialect& dialect_of(std::string_view path) {
                                          {".fun", automation_studio},
                                          {".prg", automation_studio},
                                          {".exp", codesys},
-                                         {".tcpou", codesys},
-                                         {".tcdut", codesys},
-                                         {".tcgvl", codesys},
-                                         {".tcio", codesys},
-                                         {".tctleo", codesys},
-                                         {".plcproj", codesys},
-                                         {".xml", codesys}};
+                                         {".tcpou", twincat},
+                                         {".tcdut", twincat},
+                                         {".tcgvl", twincat},
+                                         {".tcio", twincat},
+                                         {".tctleo", twincat},
+                                         {".plcproj", twincat},
+                                         {".xml", codesys},
+                                         {".matiec", matiec}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });

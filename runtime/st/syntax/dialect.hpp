@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string_view>
 
 namespace lineshaft::st {
+
+/// Whose blocks of the standard differ from it.
+enum class Vendor : std::uint8_t { none, automation_studio, codesys, siemens };
 
 /// What one language of the name Structured Text means where another means something else. A source
 /// has one dialect for good, see Source. All else is read alike in all of them.
@@ -29,10 +33,14 @@ struct Dialect {
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
     bool references_take_addresses = false;   ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
-    bool instances_begin_as_siemens = false;  ///< see find_beginning
+    Vendor vendor = Vendor::none;             ///< whose instances begin as find_beginning says
     bool peripheries_are_image = false;       ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
     bool dint_is_time = false;                ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;       ///< STRING[0], and a reference to it is one to any
+    bool addresses_count_sizes = false;       ///< `%MW1` is the second word, else at byte 1
+    bool whole_reals_have_points = false;     ///< REAL_TO_STRING(12.0) is '12.0', else '12'
+    std::uint8_t most_aligned = 1;            ///< bytes that a member of a structure begins at
+    std::uint32_t text_length = 254;          ///< characters of a STRING without a length
     bool long_numbers_count_time = false;     ///< TIME_TO_LINT(T#1s) is 1000, else in ns
     bool reckons_wide = false;      ///< whole numbers in 64 bits, until they are kept, as on x64
     bool bool_is_number = false;    ///< a BOOL is 0 or 1 where a number is due
@@ -43,11 +51,11 @@ struct Dialect {
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
 /// SCL of Siemens' TIA Portal.
-extern const Dialect iec, automation_studio, codesys, scl;
+extern const Dialect iec, automation_studio, codesys, twincat, scl;
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
-/// `.prg` puts together are B&R's, `.EXP` and TwinCAT's `.TcPOU` and its like CODESYS, all others
-/// SCL.
+/// `.prg` puts together are B&R's, `.EXP` and `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, all
+/// others SCL.
 const Dialect& dialect_of(std::string_view path);
 
 }  // namespace lineshaft::st

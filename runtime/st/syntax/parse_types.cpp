@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
@@ -143,6 +145,7 @@ void parse_reference(Parsing& p, TypeText& type) {
 ///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     bool texts_are_names = has_attribute(p, p.at, "to_string");
+    std::string_view pack_mode = attribute_value(p, p.at, "pack_mode");
     const Token opener = p.take();
     const auto is_abstract = [&] { return p.is_name(1) || p.next().word == Word::end_type_; };
     while (accept_access(p) || (is_abstract() && p.accept(Word::abstract_))) continue;
@@ -150,6 +153,7 @@ void parse_type_declarations(Parsing& p) {
         TypeDeclaration declared;
         declared.texts_are_names = has_attribute(p, p.at, "to_string") || texts_are_names;
         texts_are_names = false;
+        if (pack_mode.empty()) pack_mode = attribute_value(p, p.at, "pack_mode");
         declared.name = expect_name(p, "the name of a type");
         Token base;
         if (p.accept(Word::extends_)) base = parse_qualified_name(p, "a structure");
@@ -157,6 +161,7 @@ void parse_type_declarations(Parsing& p) {
         if (!p.is(Word::struct_) && !p.is(Word::union_)) expect(p, Word::colon, "after the name");
         declared.type = parse_type(p);
         declared.type->base = base;
+        declared.type->pack_mode = std::exchange(pack_mode, {});
         if (p.accept(Word::assign)) declared.initial = parse_initial(p);
         if (!p.accept(Word::semicolon) && !p.is(Word::end_type_)) end_statement(p);
         if (p.panic) skip_declaration(p);

@@ -19,15 +19,39 @@ std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_
     return {};
 }
 
-bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name) {
-    return std::any_of(tokens.pragmas.begin(), tokens.pragmas.end(), [&](const Pragma& pragma) {
+namespace {
+
+/// What stands between the quotes of `text` at the number `place`; empty: it has fewer.
+std::string_view between_quotes(std::string_view text, int place) {
+    for (; place >= 0; --place) {
+        text.remove_prefix(std::min(text.find('\''), text.size() - 1) + 1);
+        const std::size_t end = std::min(text.find('\''), text.size());
+        if (place == 0) return text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (text.empty()) break;
+    }
+    return {};
+}
+
+const Pragma* find_attribute(const Tokens& tokens, std::size_t token, std::string_view name) {
+    const auto it = std::ranges::find_if(tokens.pragmas, [&](const Pragma& pragma) {
         if (pragma.before != token) return false;
-        std::string_view text = pragma.place.text();
-        const std::size_t quote = std::min(text.find('\''), text.size());
-        if (text.substr(0, quote).find("attribute") == text.npos) return false;
-        text.remove_prefix(std::min(quote + 1, text.size()));
-        return same_name(text.substr(0, text.find('\'')), name);
+        const std::string_view text = pragma.place.text();
+        const std::string_view words = text.substr(0, std::min(text.find('\''), text.size()));
+        return words.find("attribute") != words.npos && same_name(between_quotes(text, 0), name);
     });
+    return it == tokens.pragmas.end() ? nullptr : &*it;
+}
+
+}  // namespace
+
+bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name) {
+    return find_attribute(tokens, token, name) != nullptr;
+}
+
+std::string_view attribute_value(const Tokens& tokens, std::size_t token, std::string_view name) {
+    const Pragma* found = find_attribute(tokens, token, name);
+    return found ? between_quotes(found->place.text(), 1) : std::string_view();
 }
 
 bool is_of_caller(const Tokens& tokens, std::size_t token) {

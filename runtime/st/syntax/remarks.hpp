@@ -16,6 +16,9 @@ std::pair<std::string_view, Place> unit_between(const Tokens& tokens, std::size_
 /// `{attribute 'name'}` stands before a token, and behind the one before that.
 bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view name);
 
+/// The value of `{attribute 'name' := 'value'}` there; empty without one.
+std::string_view attribute_value(const Tokens& tokens, std::size_t token, std::string_view name);
+
 /// `{CallerFilePath}` or `{CallerLineNumber}` of SIMATIC AX stands before it.
 bool is_of_caller(const Tokens& tokens, std::size_t token);
 

@@ -33,15 +33,14 @@ Type long_time(Kind kind, const char* name) {
     return type;
 }
 
-Type text_type(bool is_open = false) {
+Type text_type(std::uint32_t length, bool is_open = false) {
     Type type = elementary(Kind::text, "STRING");
-    type.length = 254;
+    type.length = length;
     type.slots = 0;
     type.is_open = is_open;
     return type;
 }
 
-// STRING without a length holds 254 characters, as Siemens has it.
 const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::integer, "SINT", 8, true),
                       elementary(Kind::integer, "INT", 16, true),
@@ -59,7 +58,7 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::real, "LREAL", 64),
                       elementary(Kind::time, "TIME", 64, true),
                       long_time(Kind::time, "LTIME"),
-                      text_type(),
+                      text_type(scl.text_length),
                       elementary(Kind::date, "DATE", 64, true),
                       long_time(Kind::date, "LDATE"),
                       elementary(Kind::clock, "TOD", 64, true),
@@ -93,7 +92,7 @@ bool refer_to_the_same(const Type* a, const Type* b) {
     return a && b && !a->is_reference() && same_type(*a, *b);
 }
 
-const Type open_string = text_type(true);
+const Type open_string = text_type(scl.text_length, true);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
@@ -149,6 +148,11 @@ const Type* find_elementary(std::string_view name) {
     if (same_name(name, "wstring")) return &string_type;
     if (same_name(name, "wchar")) return &char_type;
     return find_called(table, name, &Type::name);
+}
+
+const Type& unsized_string(const Dialect& dialect) {
+    static const Type shorter = text_type(codesys.text_length);
+    return dialect.text_length == shorter.length ? shorter : string_type;
 }
 
 const Type& integer_type(int bits, bool is_signed) {
@@ -207,7 +211,7 @@ bool same_type(const Type& a, const Type& b) {
             return refer_to_the_same(&a, &b);
         case Kind::structure:
         case Kind::union_:
-            return a.is_unnamed && b.is_unnamed &&
+            return a.is_unnamed && b.is_unnamed && a.pack == b.pack &&
                    std::ranges::equal(a.members, b.members,
                                       [](const Variable* x, const Variable* y) {
                                           return same_name(x->text, y->text) && x->type &&

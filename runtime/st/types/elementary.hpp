@@ -17,6 +17,9 @@ std::string describe(const Type& type);
 /// are UTF-8, and what counts their characters counts bytes.
 const Type* find_elementary(std::string_view name);
 
+/// STRING without a length, as the dialect has it.
+const Type& unsized_string(const Dialect& dialect);
+
 /// What stands before '#': also Siemens' B, W, DW, LW and L.
 const Type* find_prefix(std::string_view name);
 

@@ -20,13 +20,18 @@ std::uint64_t aligned(std::uint64_t bits, std::uint64_t to) {
     return (bits + to - 1) / to * to;
 }
 
-/// Where the next value of the type may begin, which needs so many bits. On an S7 booleans share
+/// Where the next value of the type may begin on an S7, which needs so many bits. Booleans share
 /// bytes, and what is longer than a byte begins at an even one.
-std::uint64_t begin_of(const Type& type, std::uint64_t at, const Dialect& dialect) {
-    if (!dialect.packs_as_s7) return aligned(at, 8);
+std::uint64_t begin_on_s7(const Type& type, std::uint64_t at, const Dialect& dialect) {
     if (type.kind == Kind::boolean) return at;
     const bool is_byte = type.is_scalar() && packed_bits(type, dialect) == 8;
     return aligned(at, is_byte ? 8 : 16);
+}
+
+std::uint64_t begin_of(const Type& member, const Type& structure, std::uint64_t at,
+                       const Dialect& dialect) {
+    return dialect.packs_as_s7 ? begin_on_s7(member, at, dialect)
+                               : 8 * aligned_behind((at + 7) / 8, member, structure);
 }
 
 std::optional<PackedFormat> of_time(const Type& type, const Dialect& dialect) {
@@ -101,21 +106,21 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         const std::uint64_t bits = member->type ? packed_bits(*member->type, dialect) : 0;
         if (bits == 0) return 0;
         const bool is_union = type.kind == Kind::union_;
-        end = is_union ? std::max(end, bits) : begin_of(*member->type, end, dialect) + bits;
+        end = is_union ? std::max(end, bits) : begin_of(*member->type, type, end, dialect) + bits;
     }
-    return aligned(end, dialect.packs_as_s7 ? 16 : 8);
+    return aligned(end, dialect.packs_as_s7 ? 16 : 8 * alignment_of(type));
 }
 
 std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
     const std::uint64_t bits = packed_bits(*array.element, dialect);
-    return begin_of(*array.element, bits, dialect);
+    return dialect.packs_as_s7 ? begin_on_s7(*array.element, bits, dialect) : bits;
 }
 
 std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {
     std::uint64_t end = 0;
     if (structure.kind == Kind::union_) return 0;
     for (const Variable* member : structure.members) {
-        const std::uint64_t begin = begin_of(*member->type, end, dialect);
+        const std::uint64_t begin = begin_of(*member->type, structure, end, dialect);
         if (member == &wanted) return begin;
         end = begin + packed_bits(*member->type, dialect);
     }

@@ -17,6 +17,50 @@ bool lacks_base(const Type& type) {
     return type.has_unknown_base || (type.routine && type.routine->has_unknown_base);
 }
 
+namespace {
+
+std::uint64_t rounded_up(std::uint64_t bytes, std::uint64_t to) {
+    return (bytes + to - 1) / to * to;
+}
+
+/// A block of CODESYS begins with where its methods are.
+std::uint64_t bytes_of_block(const Type& type) {
+    const Routine& block = *type.routine;
+    const bool has_methods = block.pou->name.place.dialect().vendor == Vendor::codesys;
+    std::uint64_t bytes = block.base ? bytes_of(*block.base->type) : has_methods ? 8 : 0;
+    for (const Variable& variable : block.variables)
+        if (variable.type && variable.space == Space::frame)
+            bytes = aligned_behind(bytes, *variable.type, type) + bytes_of(*variable.type);
+    return rounded_up(std::max<std::uint64_t>(bytes, 1), alignment_of(type));
+}
+
+}  // namespace
+
+std::uint64_t alignment_of(const Type& type) {
+    std::uint64_t most = 1;
+    switch (type.kind) {
+        case Type::Kind::text:
+            return 1;
+        case Type::Kind::array:
+            return type.element ? alignment_of(*type.element) : 1;
+        case Type::Kind::structure:
+        case Type::Kind::union_:
+            for (const Variable* member : type.members)
+                if (member->type) most = std::max(most, alignment_of(*member->type));
+            return std::min<std::uint64_t>(most, type.pack);
+        case Type::Kind::block:
+            return type.pack;
+        case Type::Kind::standard:
+            return 8;
+        default:
+            return std::max<std::uint64_t>(bytes_of(type), 1);
+    }
+}
+
+std::uint64_t aligned_behind(std::uint64_t bytes, const Type& member, const Type& whole) {
+    return rounded_up(bytes, std::min<std::uint64_t>(alignment_of(member), whole.pack));
+}
+
 std::uint64_t bytes_of(const Type& type) {
     std::uint64_t bytes = 0;
     switch (type.kind) {
@@ -35,18 +79,15 @@ std::uint64_t bytes_of(const Type& type) {
             return type.count() * bytes_of(*type.element);
         case Type::Kind::structure:
             for (const Variable* member : type.members)
-                bytes += member->type ? bytes_of(*member->type) : 0;  // told, if it has none
-            return bytes;
+                if (member->type)  // told, if it has none
+                    bytes = aligned_behind(bytes, *member->type, type) + bytes_of(*member->type);
+            return rounded_up(bytes, alignment_of(type));
         case Type::Kind::union_:
             for (const Variable* member : type.members)
                 if (member->type) bytes = std::max(bytes, bytes_of(*member->type));
-            return bytes;
+            return rounded_up(bytes, alignment_of(type));
         case Type::Kind::block:
-            if (type.routine->base) bytes = bytes_of(*type.routine->base->type);
-            for (const Variable& variable : type.routine->variables)
-                if (variable.type && variable.space == Space::frame)
-                    bytes += bytes_of(*variable.type);
-            return std::max<std::uint64_t>(bytes, 1);  // elements of an array are apart
+            return bytes_of_block(type);
         case Type::Kind::standard:
             return type.standard->size;
         case Type::Kind::reference:

@@ -69,6 +69,7 @@ struct Type {
                                  ///< ARRAY[*], to the first element of what is given
     std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};       ///< of a structure, a union
+    std::uint8_t pack = 1;  ///< of these, of a block: bytes that a member is aligned to at most
     bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
@@ -131,6 +132,12 @@ const Expression& root_of(const Expression& place);
 /// The bytes that a controller's memory has of a value, one variable behind the other: what SIZEOF
 /// is, and what a POINTER is reckoned in.
 std::uint64_t bytes_of(const Type& type);
+
+/// Bytes of which its place there is a multiple.
+std::uint64_t alignment_of(const Type& type);
+
+/// Where a member of the structure or block begins that is behind so many bytes.
+std::uint64_t aligned_behind(std::uint64_t bytes, const Type& member, const Type& whole);
 
 /// A block or a structure with a base that was told, or is lost: what it has besides is not known.
 bool lacks_base(const Type& type);

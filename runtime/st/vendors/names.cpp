@@ -21,9 +21,9 @@ constexpr Renamed types[] = {
     {"cam_ref", " to_cam "},
     {"axes_group_ref", " axis_group_ref_sm3 "},
     {"path_ref", " mc_path_ref "},
-    {"ton", " ton_time ton_ltime iec_timer iec_ltimer "},
-    {"tof", " tof_time tof_ltime "},
-    {"tp", " tp_time tp_ltime "},
+    {"ton", " ton_time ton_ltime lton iec_timer iec_ltimer "},
+    {"tof", " tof_time tof_ltime ltof "},
+    {"tp", " tp_time tp_ltime ltp "},
     {"ctu_int", " iec_counter "},
     {"ctu_dint", " iec_dcounter "},
     {"ctu_udint", " iec_udcounter "},
@@ -78,9 +78,32 @@ constexpr AddedInput added_inputs[] = {
 constexpr std::int64_t directions[] = {0, 1, 2, 0},
                        homing_modes[] = {0, 3, 4, 4, 4, 4, 3, 0, 4, 4, 4, 0, 3, 4};
 
-constexpr Beginning beginnings[] = {{"mc_moveabsolute", "Direction", 1},
+constexpr Beginning of_siemens[] = {{"mc_moveabsolute", "Direction", 1},
                                     {"mc_movevelocity", "Velocity", 100},
                                     {"f_trig", "last", 1}};
+
+/// Counters count in 16 bits without a sign. TwinCAT's F_TRIG gives no pulse at the first scan.
+constexpr Beginning of_codesys[] = {{"ctu", "data_type", 7},
+                                    {"ctd", "data_type", 7},
+                                    {"ctud", "data_type", 7},
+                                    {"f_trig", "last", 1}};
+
+/// Its CTUD counts in INT.
+constexpr Beginning of_automation_studio[] = {{"ctu", "data_type", 7}, {"ctd", "data_type", 7}};
+
+std::span<const Beginning> beginnings_of(Vendor vendor) {
+    switch (vendor) {
+        case Vendor::siemens:
+            return of_siemens;
+        case Vendor::codesys:
+            return of_codesys;
+        case Vendor::automation_studio:
+            return of_automation_studio;
+        case Vendor::none:
+            break;
+    }
+    return {};
+}
 
 /// Empty: it is none of theirs.
 std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
@@ -133,8 +156,8 @@ Meanings meanings_of_numbers(std::string_view input) {
     return {};
 }
 
-const Beginning* find_beginning(std::string_view kind) {
-    return find_called(beginnings, kind, &Beginning::kind);
+const Beginning* find_beginning(std::string_view kind, Vendor vendor) {
+    return find_called(beginnings_of(vendor), kind, &Beginning::kind);
 }
 
 }  // namespace lineshaft::st

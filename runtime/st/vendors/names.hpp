@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft::st {
 
@@ -56,14 +57,14 @@ struct Meanings {
 /// By the name of the input. Empty where there are none.
 Meanings meanings_of_numbers(std::string_view input);
 
-/// What a block begins with in Siemens' SCL, and not elsewhere.
+/// What a block begins with in one vendor's language, and not elsewhere.
 struct Beginning {
     std::string_view kind, part;
     int value = 0;
 };
 
 /// Null for another kind.
-const Beginning* find_beginning(std::string_view kind);
+const Beginning* find_beginning(std::string_view kind, Vendor vendor);
 
 // instead.cpp
 
