@@ -51,7 +51,9 @@ const Dialect scl = {.sign_precedes_power = false,
                      .instances_begin_as_siemens = true,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
-                     .long_numbers_count_time = true};
+                     .long_numbers_count_time = true,
+                     .zero_divides_to_zero = true,
+                     .texts_are_windows_1252 = true};
 
 const Dialect& dialect_of(std::string_view path) {
     struct Ending {

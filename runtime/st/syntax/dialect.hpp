@@ -34,8 +34,10 @@ struct Dialect {
     bool dint_is_time = false;                ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;       ///< STRING[0], and a reference to it is one to any
     bool long_numbers_count_time = false;     ///< TIME_TO_LINT(T#1s) is 1000, else in ns
-    bool reckons_wide = false;    ///< whole numbers in 64 bits, until they are kept, as on x64
-    bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
+    bool reckons_wide = false;  ///< whole numbers in 64 bits, until they are kept, as on x64
+    bool zero_divides_to_zero = false;    ///< x / 0 and x MOD 0 are 0, else a fault
+    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8
+    bool bool_is_number = false;          ///< a BOOL is 0 or 1 where a number is due
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
