@@ -80,7 +80,10 @@ constexpr std::int64_t directions[] = {0, 1, 2, 0},
 
 constexpr Beginning beginnings[] = {{"mc_moveabsolute", "Direction", 1},
                                     {"mc_movevelocity", "Velocity", 100},
-                                    {"f_trig", "last", 1}};
+                                    {"f_trig", "last", 1},
+                                    {"ton", "keeps_pt", 1},
+                                    {"tof", "keeps_pt", 1},
+                                    {"tp", "keeps_pt", 1}};
 
 /// Empty: it is none of theirs.
 std::string_view standard_of(std::span<const Renamed> rows, std::string_view name) {
