@@ -21,7 +21,8 @@ bool is_valid(const Edge<falling>& edge, const KeptState&) {
 
 template <TimerKind kind>
 bool is_valid(const Timer<kind>& timer, const KeptState& machine) {
-    return are_booleans(timer.running, timer.last_in) && machine.is_moment(timer.start);
+    return are_booleans(timer.running, timer.last_in, timer.keeps_pt) &&
+           machine.is_moment(timer.start);
 }
 
 bool is_valid(const Ctu& counter, const KeptState&);

@@ -393,6 +393,37 @@ def check_task_classes():
     run("run", "--quiet", "classes.yaml")
 
 
+def check_organization_blocks():
+    """Siemens: OB100 once, each cyclic interrupt in a task of its own, OB1 in the main task; an interrupt is left to the user."""
+    def block(name, title, inputs, body):
+        write(f"Tia/{name}.scl", f'ORGANIZATION_BLOCK "{name}"\nTITLE = "{title}"\n{{ S7_Optimized_Access := \'TRUE\' }}\nVERSION : 0.1\n'
+              f'   VAR_INPUT\n{inputs}   END_VAR\nBEGIN\n\t{body}\nEND_ORGANIZATION_BLOCK\n')
+    write("Tia/Data.db", 'DATA_BLOCK "Data"\nVERSION : 0.1\n   VAR\n      starts, mains, ticks, slow, seen : Int;\n   END_VAR\nBEGIN\nEND_DATA_BLOCK\n')
+    block("Main", "Main Program Sweep (Cycle)", "      Initial_Call : Bool;\n      Remanence : Bool;\n", '"Data".mains += 1; "Data".seen := "Data".starts;')
+    block("Init", "Complete Restart", "      LostRetentive : Bool;\n      LostRTC : Bool;\n", '"Data".starts += 1;')
+    block("Cyclic interrupt", "", "      Initial_Call : Bool;\n      Event_Count : Int;\n", '"Data".ticks += 1;')
+    block("OB38_Slow", "", "", '"Data".slow += 1;')
+    block("Hardware interrupt", "", "      LADDR : HW_IO;\n", '"Data".mains := 0;')
+    run("new", "tia", "--from", "Tia")
+    text = (work / "tia.yaml").read_text()
+    for line in ("  main: {every: 10 ms, priority: 1}\n", "  Cyclic_interrupt: {every: 100 ms, priority: 8}  # the export does not say the interval\n",
+                 "  OB38_Slow: {every: 100 ms, priority: 16}", "  startup: {once: true}\n", "  # 'Hardware interrupt' is of an event",
+                 "  Init: {type: Init, task: startup}\n", "  Main: {type: Main, task: main}\n"):
+        assert line in text, (line, text)
+    assert "type: Hardware" not in text, text
+    write("tia.yaml", text + "expect:\n" + "".join(f"  - {{at: end, Data.{name}: {value}}}\n" for name, value in
+          (("starts", 1), ("mains", 101), ("seen", 1), ("ticks", 11), ("slow", 11))))
+    run("run", "tia.yaml", "--quiet")
+    numbered = ('<?xml version="1.0"?>\n<Document><SW.Blocks.OB ID="0"><AttributeList><Name>{0}</Name><Number>{1}</Number>'
+                "<ProgrammingLanguage>SCL</ProgrammingLanguage>{2}</AttributeList></SW.Blocks.OB></Document>\n")
+    for name, number, kind in (("Plant", 1, "ProgramCycle"), ("Begin", 100, "Startup"), ("Control", 124, "CyclicInterrupt")):
+        write(f"Xml/{name}.xml", numbered.format(name, number, f"<SecondaryType>{kind}</SecondaryType>"))
+    run("new", "xml", "--from", "Xml")
+    text = (work / "xml.yaml").read_text()
+    for line in ("  Plant: {type: Plant, task: main}", "  Begin: {type: Begin, task: startup}", "  Control: {type: Control, task: Control}"):
+        assert line in text, (line, text)
+
+
 def check_softmotion():
     """An axis of the device tree is one wherever it is named; a name that no pin of an axis is given is none."""
     write("soft/A_panel.st", "PROGRAM A_panel\nVAR place : LREAL; stands : BOOL; END_VAR\nplace := Lift.fActPosition;\n"
@@ -772,6 +803,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_task_classes()
     check_headers()
     check_mapp()
+    check_organization_blocks()
     check_softmotion()
     check_local_types()
     check_apax()

@@ -63,6 +63,21 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.ErrorDetail".Number := TO_UDINT(axis.error_id);
 END_FUNCTION
 
+TYPE "AXIS_REF.Overrides" : STRUCT Velocity : LREAL; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.Override" : "AXIS_REF.Overrides"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Override".Velocity := 100 * axis.velocity_factor;
+END_FUNCTION
+
+TYPE "AXIS_REF.Drive" : STRUCT InOperation, CommunicationOK, Error : BOOL; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.StatusDrive" : "AXIS_REF.Drive"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.StatusDrive".InOperation := axis.state <> disabled;
+    "AXIS_REF.StatusDrive".CommunicationOK := TRUE;
+END_FUNCTION
+
 TYPE "AXIS_REF.Limits" : STRUCT
     Active : BOOL;
     MinPosition, MaxPosition : LREAL;

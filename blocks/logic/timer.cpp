@@ -14,6 +14,8 @@ std::span<const Field> Timer<kind>::fields() {
         input("pt", &T::pt, "ns", "preset time, such as 500 ms").must_be_set(),
         output("q", &T::q, "", "the signal delayed, or the pulse"),
         output("et", &T::et, "ns", "elapsed time, up to pt"),
+        local("keeps_pt", &T::keeps_pt, "", "a new pt counts from the next start on"),
+        local("preset", &T::preset, "ns", "pt at the last start"),
     };
     return table;
 }
@@ -22,13 +24,14 @@ template <TimerKind kind>
 void Timer<kind>::begin(const Scan& now) {
     running = true;
     start = now.time;
+    preset = pt;
 }
 
 template <TimerKind kind>
 bool Timer<kind>::elapsed(const Scan& now) {
     const std::int64_t time = now.time - start;
-    et = std::min(time, std::max<std::int64_t>(pt, 0));
-    return time >= pt;
+    et = std::min(time, std::max<std::int64_t>(limit(), 0));
+    return time >= limit();
 }
 
 template <>

@@ -29,9 +29,9 @@ inline constexpr std::string_view timer_docs[] = {
 ///
 /// `et` stops at `pt` and stays there, of TON and TP until `in` is false, of TOF until it is true.
 /// pt <= 0 is no time: q of TON and TOF follows `in` at once, TP gives no pulse.
-/// The standard leaves open what a new `pt` does while time runs, and vendors differ (Siemens:
-/// nothing before the next start). Here the `pt` of each scan counts until the time is up; after
-/// that it has no effect before the next start.
+/// The standard leaves open what a new `pt` does while time runs, and vendors differ. Here the `pt`
+/// of each scan counts until the time is up; after that it has no effect before the next start.
+/// With `keeps_pt`, as in Siemens' controllers, it has none from the start on: `preset` counts.
 template <TimerKind kind>
 struct Timer {
     bool in = false;
@@ -42,7 +42,9 @@ struct Timer {
 
     bool running = false;  ///< TON: since `in` rose; TOF: since it fell
     bool last_in = false;  ///< TP
+    bool keeps_pt = false;
     std::int64_t start = 0;
+    std::int64_t preset = 0;  ///< pt at the start
 
     static constexpr std::string_view type = timer_names[static_cast<std::size_t>(kind)];
     static constexpr std::string_view doc = timer_docs[static_cast<std::size_t>(kind)];
@@ -54,6 +56,7 @@ struct Timer {
   private:
     void begin(const Scan& now);
     bool elapsed(const Scan& now);
+    std::int64_t limit() const { return keeps_pt ? preset : pt; }
 };
 
 using Ton = Timer<TimerKind::ton>;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -16,11 +17,12 @@ TaskSettings settings_of(const TaskPlan& plan) {
     TaskSettings task;
     task.name = plan.name;
     task.on_event = plan.every == 0;
+    task.once = plan.once;
     task.motion = plan.motion;
     task.maximum_cycle_time = plan.maximum_cycle_time.value_or(never);
     task.every = plan.every;
     task.offset = plan.offset;
-    task.priority = plan.priority;
+    task.priority = plan.once ? std::numeric_limits<std::int64_t>::max() : plan.priority;
     task.jitter = plan.jitter;
     task.cost = plan.cost;
     task.cost_jitter = plan.cost_jitter;

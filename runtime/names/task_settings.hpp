@@ -18,6 +18,7 @@ struct CostStimulus {
 struct TaskSettings {
     std::string name;
     bool on_event = false;  ///< not cyclic: released by triggers, or by other tasks' overruns
+    bool once = false;      ///< released by the start alone, before all others
     bool motion = false;    ///< an overrun is STOP whatever the program says
     std::int64_t every = 0, offset = 0, priority = 1, jitter = 0, cost = 0, cost_jitter = 0;
     std::int64_t maximum_cycle_time = never;  ///< from the start of a scan to its end

@@ -31,6 +31,7 @@ struct TaskPlan {
     std::string name;
     Mark mark;
     std::vector<Node> on;     ///< boolean signals whose rising edges start it; then `every` is 0
+    bool once = false;        ///< one scan before all others, as OB100; then `every` is 0
     bool unattached = false;  ///< the controller leaves it to the program to say what starts it
     std::int64_t every = 0;
     std::int64_t offset = 0;

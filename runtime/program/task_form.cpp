@@ -42,12 +42,15 @@ void check_times(const Reader& read, const Node& body, const TaskPlan& task) {
 /// What starts the task is said once; what is said last replaces what its controller says.
 void check_task(const Reader& read, const Node& body, TaskPlan& task) {
     const bool on = body.find("on"), overrun = body.find("on_overrun"), every = body.find("every");
-    if (on || overrun) task.every = task.offset = task.jitter = 0;
-    if (every || (overrun && !on)) task.on.clear();
-    if (every || on) task.on_overrun.clear();
-    const bool said = on || overrun || every;
+    const bool once = body.find("once") && task.once;
+    if (on || overrun || once) task.every = task.offset = task.jitter = 0;
+    if (every || once || (overrun && !on)) task.on.clear();
+    if (every || on || once) task.on_overrun.clear();
+    if (every || on || overrun) task.once = false;
+    const bool said = on || overrun || every || once;
     if (said) task.unattached = false;
-    if (!said && task.every == 0 && task.on.empty() && task.on_overrun.empty() && !task.unattached)
+    if (!said && task.every == 0 && task.on.empty() && task.on_overrun.empty() && !task.once &&
+        !task.unattached)
         read.diagnostics().add(
             code::entry_is_missing, task.mark,
             fmt::format("task '{}' has no 'every' and no 'on'", task.name),
@@ -57,6 +60,7 @@ void check_task(const Reader& read, const Node& body, TaskPlan& task) {
 }
 
 constexpr const char* no_interval = "an event task has no interval";
+constexpr const char* no_other_start = "a task that runs once comes before all others";
 
 template <st::OpClass of>
 void read_time(const Reader& read, const Node& node, st::InstructionTimes& times) {
@@ -82,6 +86,9 @@ const Form& task_form() {
               key<&TaskPlan::on_overrun>("on_overrun",
                                          one_or_list(a_task, "'on_overrun' names no task"),
                                          "tasks: each of their time errors starts a scan, as OB80"),
+              key<&TaskPlan::once>("once", a_boolean,
+                                   "one scan, before the first of any other task, as OB100")
+                  .by_default("false"),
               key<&TaskPlan::offset>("offset", a_time, "start of the first scan").by_default("0 s"),
               key<&TaskPlan::priority>("priority", an_integer, "a larger number wins")
                   .by_default("1"),
@@ -110,6 +117,12 @@ const Form& task_form() {
                {"every", "offset", "jitter", "on_overrun"},
                {},
                no_interval,
+               the_other},
+              {not_with,
+               "once",
+               {"every", "on", "on_overrun", "offset", "priority", "jitter"},
+               {},
+               no_other_start,
                the_other},
               {not_with, "on_overrun", {"every", "offset", "jitter"}, {}, no_interval, the_other}},
          .check = by<check_task>});

@@ -125,6 +125,8 @@ std::vector<WholeProject> read_projects(const std::string& path,
         projects::Project read = read_project(file, include_dirs, out);
         for (auto& source : read.sources) rest.project.add(std::move(source));
         std::ranges::move(read.tasks, std::back_inserter(rest.project.tasks));
+        std::ranges::move(read.organization_blocks,
+                          std::back_inserter(rest.project.organization_blocks));
         std::ranges::move(read.libraries, std::back_inserter(rest.project.libraries));
     }
     rest.own = rest.project.sources.size();

@@ -8,6 +8,7 @@
 #include "runtime/projects/automation_studio.hpp"
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
+#include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/simatic_ml.hpp"
 #include "runtime/projects/simatic_sd.hpp"
@@ -38,6 +39,7 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     auto source = read_source(path, to.out, where);
     if (!source) return;
     read_configuration(to, source);
+    read_organization_blocks(to, source);
     if (is_of_br_library(path)) {
         SourceFile made = *source;
         made.read_as = ".fun";

@@ -34,10 +34,25 @@ struct ProjectTask {
     std::vector<TaskProgram> programs = {};
 };
 
+/// Siemens' block that the operating system calls.
+struct OrganizationBlock {
+    enum class Start : std::uint8_t {
+        cycle,             ///< again and again, as OB1
+        startup,           ///< once, before all others, as OB100
+        cyclic_interrupt,  ///< in an interval of its own, as OB30
+        event,             ///< an interrupt or a fault
+    };
+
+    Name name;
+    Start start = Start::cycle;
+    std::int64_t number = 0;  ///< 0: not said
+};
+
 /// What a project brings along.
 struct Project {
     std::vector<std::shared_ptr<const SourceFile>> sources;  ///< each of them once
     std::vector<ProjectTask> tasks;
+    std::vector<OrganizationBlock> organization_blocks;
     std::vector<Name> libraries;  ///< that it refers to
 
     /// Unless it is there.

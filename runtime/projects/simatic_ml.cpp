@@ -1,6 +1,7 @@
 #include "runtime/projects/simatic_ml.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <utility>
 
@@ -8,6 +9,7 @@
 
 #include "runtime/projects/drawings/flag_nets.hpp"
 #include "runtime/projects/drawings/simatic_access.hpp"
+#include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
@@ -250,6 +252,15 @@ class SimaticObject {
     Kind kind_ = Kind::other;
 };
 
+OrganizationBlock organization_block_of(const XmlFile& file, pugi::xml_node object) {
+    const auto attributes = object.child("AttributeList");
+    const std::string number = file.plain(attributes.child("Number"));
+    std::int64_t counted = 0;
+    std::from_chars(number.data(), number.data() + number.size(), counted);
+    return organization_block({file.plain(attributes.child("Name")), file.mark_of_tag(object)},
+                              counted, file.plain(attributes.child("SecondaryType")));
+}
+
 bool is_read(pugi::xml_node object) {
     static constexpr std::string_view kinds[] = {
         "FB", "FC", "OB", "GlobalDB", "InstanceDB", "PlcStruct", "PlcTagTable"};
@@ -277,6 +288,8 @@ void read_simatic_ml(const Reading& to, const std::string& path, const Mark& whe
         if (!is_read(object)) continue;
         SimaticObject made(*file);
         made.add(object);
+        if (kind_of(object) == "OB")
+            to.project.organization_blocks.push_back(organization_block_of(*file, object));
         to.project.add(
             made.finish(std::string(object.name()) + file->plain(object.attribute("ID"))));
     }

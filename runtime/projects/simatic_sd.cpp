@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/projects/drawings/rungs.hpp"
+#include "runtime/projects/organization_blocks.hpp"
 #include "runtime/source/yaml.hpp"
 
 namespace lineshaft::projects {
@@ -85,6 +86,7 @@ class Document {
 void read_simatic_sd(const Reading& to, const std::string& path, const Mark& where) {
     const auto source = read_source(path, to.out, where);
     if (!source) return;
+    read_organization_blocks(to, source);
     const bool is_drawn = source->text.find("RUNG") != std::string::npos;
     to.project.add(is_drawn ? Document(source, to.out).read() : source);
 }

@@ -23,7 +23,7 @@ void sow(const BlockSeed& seed, std::uint64_t run_seed) {
 Executive::Executive(Machine& machine) : machine_(machine), forces_(machine.forces) {
     for (const BlockSeed& seed : machine.block_seeds) sow(seed, machine.seed);
     for (const Task& task : machine.tasks) {
-        states_.push_back({.due = task.on_event ? never : task.offset,
+        states_.push_back({.due = task.on_event && !task.once ? never : task.offset,
                            .first_error = error_levels_.size(),
                            .scan = {},
                            .jitter = Random(machine.seed, task.name + ".jitter"),
@@ -108,6 +108,10 @@ inline void Executive::conclude(int index, const State& state) {
 }
 
 inline void Executive::State::set_next(const Task& task) {
+    if (task.once) {
+        due = never;
+        return;
+    }
     const std::int64_t off = task.jitter > 0 ? jitter.around_zero(task.jitter) : 0;
     due = later(later(due, task.every), off);
 }

@@ -61,6 +61,8 @@ struct RunResult {
 /// due, then tasks by priority. The run covers [0, duration], both included. Nothing is allocated,
 /// locked or looked up by name while cycling, unless an event is told.
 ///
+/// A task that runs once is released by the start, before all others.
+///
 /// An event task is released by each rising edge of a published boolean: of a device, a stimulus or
 /// another task's output. A value that is true from the start is no edge. Several edges at one
 /// instant are one release. An edge that comes while the task still runs is remembered and runs it

@@ -241,7 +241,7 @@ void Executive::restore_states(StateReader& in) {
 bool Executive::is_possible(const State& state, const State& fresh, const Task& task) const {
     const auto is_later = [this](std::int64_t time) { return time >= now_; };
     return is_later(later(state.due, task.every)) &&
-           (task.on_event == (state.due == never) || state.due == never) && state.released >= 0 &&
+           (!task.on_event || task.once || state.due == never) && state.released >= 0 &&
            state.released <= now_ && is_count(state.cost) && is_count(state.remaining) &&
            state.remaining <= state.cost && is_later(state.deadline) && is_count(state.index) &&
            is_count(state.repeats) && state.next_stimulus <= task.stimuli.size() &&

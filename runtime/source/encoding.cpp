@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
@@ -75,6 +74,22 @@ std::string as_utf8(std::string bytes) {
         rest.remove_prefix(character.bytes);
     }
     return text;
+}
+
+std::string in_windows_1252(std::string_view text) {
+    std::string bytes;
+    for (; !text.empty(); text.remove_prefix(first_character(text).bytes)) {
+        const Utf8Character character = first_character(text);
+        const auto* const known = std::ranges::find(windows_1252, character.code);
+        const auto place = known - std::begin(windows_1252);
+        if (character.code >= 0xA0 && character.code <= 0xFF)
+            bytes += static_cast<char>(character.code);
+        else if (character.code >= 0xA0 && character.valid && known != std::end(windows_1252))
+            bytes += static_cast<char>(0x80 + place);
+        else
+            bytes += text.substr(0, character.bytes);
+    }
+    return bytes;
 }
 
 bool is_national_letter(char32_t code) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace lineshaft {
 
@@ -11,6 +12,9 @@ bool is_structured_text(const std::filesystem::path& file);
 /// A file's text in UTF-8: UTF-16 is known by its byte order mark, and a byte that belongs to no
 /// character of UTF-8 is one of Windows-1252.
 std::string as_utf8(std::string bytes);
+
+/// A text of UTF-8 as bytes of Windows-1252. What that has not stays as it is.
+std::string in_windows_1252(std::string_view text);
 
 /// What a name may have beside letters, digits and `_` of ASCII: as XML 1.0 has it, without signs.
 bool is_national_letter(char32_t code);

@@ -29,8 +29,9 @@ struct NewBlock {
 
 struct NewTask {
     std::string name;
-    std::int64_t every, priority;
+    std::int64_t every, priority;  ///< `every` 0: once, before all others
     std::vector<projects::TaskProgram> programs;
+    bool is_guessed = false;  ///< `every`: the project does not say it
 };
 
 /// A name of a task as a program may have it.
@@ -43,6 +44,35 @@ std::string plain_name(std::string_view text) {
 std::string time_text(std::int64_t ns) {
     if (ns % 1'000'000 == 0) return fmt::format("{} ms", ns / 1'000'000);
     return ns % 1000 == 0 ? fmt::format("{} us", ns / 1000) : fmt::format("{} ns", ns);
+}
+
+/// One for OB1 and its like, one for each cyclic interrupt, with the interval that TIA Portal gives
+/// a new one and the priority of its number, one for what runs at the start.
+void add_organization_blocks(const projects::Project& project, std::set<std::string>& names,
+                             std::vector<NewTask>& tasks) {
+    using enum projects::OrganizationBlock::Start;
+    std::vector<projects::OrganizationBlock> blocks = project.organization_blocks;
+    std::ranges::stable_sort(blocks, {}, &projects::OrganizationBlock::number);
+    const auto add = [&](std::string name, const NewTask& task) {
+        while (!names.insert(name).second) name += '_';
+        tasks.push_back(task);
+        tasks.back().name = name;
+    };
+    const auto add_all = [&](auto start, const char* name, const NewTask& task) {
+        NewTask made = task;
+        for (const auto& block : blocks)
+            if (block.start == start) made.programs.push_back({block.name});
+        if (!made.programs.empty()) add(name, made);
+    };
+    add_all(cycle, "main", {{}, 10'000'000, 1, {}});
+    for (const auto& block : blocks)
+        if (block.start == cyclic_interrupt)
+            add(plain_name(block.name.text), {{},
+                                              100'000'000,
+                                              8 + std::clamp<std::int64_t>(block.number - 30, 0, 8),
+                                              {block.name},
+                                              true});
+    add_all(startup, "startup", {{}, 0, 0, {}});
 }
 
 /// Those that are cyclic. A project's smallest priority is the most urgent, here the largest.
@@ -59,6 +89,7 @@ std::vector<NewTask> tasks_of(const projects::Project& project) {
         const auto rank = std::distance(priorities.begin(), priorities.find(task.priority));
         tasks.push_back({name, task.every, rank + 1, task.programs});
     }
+    add_organization_blocks(project, names, tasks);
     if (tasks.empty()) tasks.push_back({"main", 10'000'000, 1, {}});
     return tasks;
 }
@@ -190,11 +221,21 @@ std::vector<std::string> signals_of(const st::Library& library, const NewBlock& 
     return signals;
 }
 
-std::string text_of(const std::vector<NewTask>& tasks, const std::vector<NewBlock>& blocks) {
+std::string text_of(const projects::Project& project, const std::vector<NewTask>& tasks,
+                    const std::vector<NewBlock>& blocks) {
     std::string text = "tasks:                           # the larger priority runs first\n";
     for (const NewTask& task : tasks)
-        text += fmt::format("  {}: {{every: {}, priority: {}}}\n", task.name, time_text(task.every),
-                            task.priority);
+        text +=
+            task.every == 0
+                ? fmt::format("  {}: {{once: true}}\n", task.name)
+                : fmt::format("  {}: {{every: {}, priority: {}}}{}\n", task.name,
+                              time_text(task.every), task.priority,
+                              task.is_guessed ? "  # the export does not say the interval" : "");
+    for (const projects::OrganizationBlock& block : project.organization_blocks)
+        if (block.start == projects::OrganizationBlock::Start::event)
+            text +=
+                fmt::format("  # '{}' is of an event: give it a task such as x: {{on: a.signal}}\n",
+                            block.name.text);
     text += "blocks:\n";
     for (const NewBlock& block : blocks) {
         text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
@@ -297,7 +338,8 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
         "#   lineshaft check {0}.yaml{1}\n"
         "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}run: {{for: 1 s}}\n",
-        name, include_option(path, file), sources_text(*chosen, file), text_of(tasks, blocks));
+        name, include_option(path, file), sources_text(*chosen, file),
+        text_of(project, tasks, blocks));
     const std::vector<std::string> signals = signals_of(*library, programs.front());
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,

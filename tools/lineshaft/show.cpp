@@ -81,6 +81,7 @@ std::string interval(std::int64_t time) {
 
 std::string timing(const Drawing& drawing, const Task& task) {
     std::string text;
+    if (task.once) return "once, before all others";
     if (task.on_event) {
         const auto plan = std::ranges::find(drawing.program.tasks, task.name, &TaskPlan::name);
         for (const Node& signal : plan->on) text += (text.empty() ? "on " : ", ") + signal.text;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -71,7 +72,10 @@ const Type* check_time(Checking& c, Expression*& slot) {
 }
 
 const Type* check_text(Checking& c, Expression& e) {
-    const auto text = read_text(e.token.text, e.token.quoted);
+    const std::string written = e.place.dialect().texts_are_windows_1252
+                                    ? in_windows_1252(e.token.text)
+                                    : std::string(e.token.text);
+    const auto text = read_text(written, e.token.quoted);
     if (!text)
         return c.fail(code::value_out_of_range, e.place,
                       "'$' is not followed by one of its characters",

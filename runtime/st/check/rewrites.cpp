@@ -90,8 +90,16 @@ void check_special(Checking& c, Statement*& s) {
     Expression*& timer = call.arguments[1].value;
     check_timer(c, timer, f.name);
     if (!timer->type) return;
-    s = make_assignment(c, s->place, make_member(c, timer, "pt"), call.arguments[0].value);
-    check_assignment(c, s);
+    Block assignments{
+        make_assignment(c, s->place, make_member(c, timer, "pt"), call.arguments[0].value)};
+    check_assignment(c, assignments.back());
+    if (s->place.dialect().instances_begin_as_siemens) {  // it counts for a time that runs, too
+        assignments.push_back(make_assignment(c, s->place, make_member(c, timer, "preset"),
+                                              make_member(c, timer, "pt")));
+        check(c, assignments.back()->target);
+        check(c, assignments.back()->value);
+    }
+    s = make_sequence(c, s->place, std::move(assignments));
 }
 
 }  // namespace

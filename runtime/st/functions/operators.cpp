@@ -10,7 +10,7 @@ constexpr StandardFunction operators[] = {
     {"ADD(IN1, IN2, ...: ANY_MAGNITUDE): ANY_MAGNITUDE", "IN1 + IN2", Word::plus},
     {"SUB(IN1, IN2: ANY_MAGNITUDE): ANY_MAGNITUDE", "IN1 - IN2", Word::minus},
     {"MUL(IN1, IN2, ...: ANY_NUM): ANY_NUM", "IN1 * IN2; also of a TIME and a number", Word::times},
-    {"DIV(IN1, IN2: ANY_NUM): ANY_NUM", "IN1 / IN2, of integers towards 0 and by 0 a fault; also of a TIME and a number", Word::divided},
+    {"DIV(IN1, IN2: ANY_NUM): ANY_NUM", "IN1 / IN2, of integers towards 0 and by 0 a fault, in SCL 0; also of a TIME and a number", Word::divided},
     {"MOD(IN1, IN2: ANY_INT): ANY_INT", "what IN1 / IN2 leaves, with the sign of IN1; by 0 a fault", Word::mod_},
     {"AND(IN1, IN2, ...: ANY_BIT): ANY_BIT", "the bits that all have", Word::and_},
     {"OR(IN1, IN2, ...: ANY_BIT): ANY_BIT", "the bits that one or more have", Word::or_},

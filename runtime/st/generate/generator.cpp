@@ -89,9 +89,24 @@ void finish(Writing& w, Routine& routine) {
     --w.unwritten_parts[&frame_of];
 }
 
+/// Siemens: the operating system tells an organization block of its first call.
+void tell_initial_call(Writing& w, const Routine& routine) {
+    const bool is_told = routine.pou->kind == PouKind::program &&
+                         routine.pou->place.dialect().instances_begin_as_siemens;
+    if (!is_told) return;
+    for (const Variable& input : routine.variables) {
+        const bool is_flag = input.section == Section::input && input.type->kind == Kind::boolean;
+        if (!is_flag || !same_name(input.text, "Initial_Call")) continue;
+        const Slot scans = w.new_temporary();
+        w.put(Op::scans_now, scans);
+        w.put(Op::eq_word, input.slot, scans, w.constant_slot(0));
+    }
+}
+
 void write(Writing& w, Routine& routine) {
     begin(w, routine);
     begin_mockable(w, routine);
+    tell_initial_call(w, routine);
     w.cover(CoverPoint::Kind::function, routine.pou->place);
     write_block(w, routine.body);
     w.leave();

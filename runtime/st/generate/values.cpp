@@ -37,6 +37,11 @@ Op wide_op(Word op) {
                                : Op::div_lint;
 }
 
+bool may_be_divided_by_zero(const Expression& e) {
+    return (e.op == Word::divided || e.op == Word::mod_) && !e.operands[1]->type->is_real() &&
+           e.operands[1]->kind != E::constant;
+}
+
 /// What stands left of `later`, as wide_value() has it.
 Slot wide_value_before(Writing& w, const Expression& e, const Expression& later) {
     return is_wide(w, e) ? wide_value(w, e) : value_before(w, e, later);
@@ -79,13 +84,8 @@ Slot lazy(Writing& w, const Expression& e) {
     return to;
 }
 
-Slot binary(Writing& w, const Expression& e, Slot wanted) {
-    if (e.op >= Word::less && e.op <= Word::unequal) return comparison(w, e, wanted);
-    if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
-    if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
+Slot reckon(Writing& w, const Expression& e, Slot a, Slot b, Slot wanted) {
     const Type& type = *e.type;
-    const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
-    const Slot b = wide_value(w, *e.operands[1]);
     if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
         const Slot real = w.emit(Op::lreal_from_signed, none, a);
         const Slot product =
@@ -124,6 +124,29 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
                           ? Op::mod_sint
                           : of_op(Op::add_sint, Op::sub_sint, Op::mul_sint, Op::div_sint);
     return w.emit(of_type(family, type), wanted, a, b);
+}
+
+/// 0 where the divisor is.
+Slot reckon_quotient(Writing& w, const Expression& e, Slot a, Slot b) {
+    const Slot to = w.new_temporary();
+    std::vector<std::uint32_t> end;
+    w.put(Op::move, to, w.constant_slot(0));
+    w.jump(Op::jump_unless, 0, b, end);
+    const Slot made = reckon(w, e, a, b, to);
+    if (made != to) w.put(Op::move, to, made);
+    w.land(end);
+    return to;
+}
+
+Slot binary(Writing& w, const Expression& e, Slot wanted) {
+    if (e.op >= Word::less && e.op <= Word::unequal) return comparison(w, e, wanted);
+    if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
+    if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
+    const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
+    const Slot b = wide_value(w, *e.operands[1]);
+    return e.place.dialect().zero_divides_to_zero && may_be_divided_by_zero(e)
+               ? reckon_quotient(w, e, a, b)
+               : reckon(w, e, a, b, wanted);
 }
 
 Slot bit(Writing& w, const Expression& e, Slot wanted) {

@@ -79,7 +79,9 @@ const Dialect scl = {.sign_precedes_power = false,
                      .vendor = Vendor::siemens,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
-                     .long_numbers_count_time = true};
+                     .long_numbers_count_time = true,
+                     .zero_divides_to_zero = true,
+                     .texts_are_windows_1252 = true};
 
 const Dialect& dialect_of(std::string_view path) {
     struct Ending {

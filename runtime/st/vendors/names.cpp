@@ -80,7 +80,10 @@ constexpr std::int64_t directions[] = {0, 1, 2, 0},
 
 constexpr Beginning of_siemens[] = {{"mc_moveabsolute", "Direction", 1},
                                     {"mc_movevelocity", "Velocity", 100},
-                                    {"f_trig", "last", 1}};
+                                    {"f_trig", "last", 1},
+                                    {"ton", "keeps_pt", 1},
+                                    {"tof", "keeps_pt", 1},
+                                    {"tp", "keeps_pt", 1}};
 
 /// Counters count in 16 bits without a sign. TwinCAT's F_TRIG gives no pulse at the first scan.
 constexpr Beginning of_codesys[] = {{"ctu", "data_type", 7},
