@@ -70,7 +70,7 @@ void add_organization_blocks(const projects::Project& project, std::set<std::str
             add(plain_name(block.name.text), {{},
                                               100'000'000,
                                               8 + std::clamp<std::int64_t>(block.number - 30, 0, 8),
-                                              {block.name},
+                                              {{block.name}},
                                               true});
     add_all(startup, "startup", {{}, 0, 0, {}});
 }
