@@ -93,7 +93,7 @@ void check_special(Checking& c, Statement*& s) {
     Block assignments{
         make_assignment(c, s->place, make_member(c, timer, "pt"), call.arguments[0].value)};
     check_assignment(c, assignments.back());
-    if (s->place.dialect().instances_begin_as_siemens) {  // it counts for a time that runs, too
+    if (s->place.dialect().vendor == Vendor::siemens) {  // it counts for a time that runs, too
         assignments.push_back(make_assignment(c, s->place, make_member(c, timer, "preset"),
                                               make_member(c, timer, "pt")));
         check(c, assignments.back()->target);

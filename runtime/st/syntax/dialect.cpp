@@ -62,7 +62,7 @@ const Dialect twincat = [] {
 static const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::none;
-    made.whole_reals_have_points = false;
+    made.whole_reals_have_points = made.enumerations_begin_at_zero = false;
     made.most_aligned = iec.most_aligned;
     made.text_length = iec.text_length;
     return made;
