@@ -13,6 +13,12 @@ constexpr std::string_view encoder_names[] = {"motor", "table"};
 constexpr std::string_view error_names[] = {"none", "not_finite", "no_position_loop",
                                             "no_velocity_loop", "no_time_constant"};
 
+/// 0 where no double holds it.
+double velocity_between(double from, double to, double elapsed) {
+    const double made = elapsed > 0 ? (to - from) / elapsed : 0;
+    return std::isfinite(made) ? made : 0;
+}
+
 }  // namespace
 
 std::span<const Field> ServoDrive::fields() {
@@ -117,10 +123,9 @@ void ServoDrive::check() {
 
 /// What `follow` comes to with everything off, in less than half the time.
 ServoError ServoDrive::copy(double elapsed) {
-    const double made = elapsed > 0 ? (set_position - motor_position) / elapsed : 0;
-    if (!has_velocity && !std::isfinite(made)) return ServoError::not_finite;
+    velocity =
+        has_velocity ? set_velocity : velocity_between(motor_position, set_position, elapsed);
     position = motor_position = table_position = set_position;
-    velocity = has_velocity ? set_velocity : made;
     return ServoError::none;
 }
 
@@ -176,7 +181,7 @@ ServoError ServoDrive::move(const SetPoint& wanted, double elapsed, bool homing)
 
 /// Of a motor without a position loop.
 VelocityLoop::State ServoDrive::at_set_point(const SetPoint& wanted, double elapsed) const {
-    const double made = elapsed > 0 ? (wanted.position - motor.position) / elapsed : 0;
+    const double made = velocity_between(motor.position, wanted.position, elapsed);
     return {wanted.position, has_velocity ? wanted.velocity : made, 0};
 }
 

@@ -15,8 +15,8 @@ inline constexpr std::size_t most_transition_parts = 16;
 /// A curve of degree five from a point to another, with their tangents and curvatures: x(s), x' and
 /// x'' go on through both. Each of the parts, halves, quarters and so on, has as its length
 /// that of the way of the first three axes, and runs along it with |x'| = 1 up to 1e-4, or where
-/// the parts would not suffice up to 4e-4, 2e-3 or 1e-2. Returns how many of `out` there are; 0 where the
-/// points are one, a tangent is 0, or the parts are too few.
+/// the parts would not suffice up to 4e-4, 2e-3 or 1e-2. Returns how many of `out` there are; 0
+/// where the points are one, a tangent is 0, or the parts are too few.
 std::size_t spline_between(const PathPoint& from, const PathPoint& to,
                            std::span<PathCurve, most_spline_parts> out);
 

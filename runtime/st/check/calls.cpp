@@ -294,14 +294,18 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
 
 void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     Expression& call = *e;
-    const std::vector<std::string> names = names_of(type.members);
+    std::vector<Variable*> pins;
+    std::ranges::copy_if(type.members, std::back_inserter(pins),
+                         [](const Variable* member) { return member->section != Section::local; });
+    const std::vector<std::string> names = names_of(pins);
     std::size_t position = 0;
     for (Argument& argument : call.arguments) {
         Variable* found = nullptr;
         if (!argument.is_named()) {
-            if (position < type.members.size()) found = type.members[position++];
+            if (position < pins.size()) found = pins[position++];
         } else {
             found = find_member(type, standard_name(type, argument.name.text));
+            if (found && found->section == Section::local) found = nullptr;
         }
         argument.variable = found;
         if (found && argument.is_named()) c.note(argument.name.place, *found);

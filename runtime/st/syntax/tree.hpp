@@ -204,7 +204,7 @@ struct TypeText {
     std::vector<std::pair<Expression*, Expression*>> ranges = {};  ///< of array and subrange
     Expression* length = nullptr;                                  ///< STRING[length]
     TypeText* element = nullptr;
-    Token base = {};  ///< of a structure that extends another
+    Token base = {};                  ///< of a structure that extends another
     std::string_view pack_mode = {};  ///< of a structure: `{attribute 'pack_mode' := '1'}`
     std::vector<struct Declaration*> members = {};
     std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given

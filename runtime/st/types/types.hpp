@@ -68,7 +68,7 @@ struct Type {
     bool is_open = false;        ///< VAR_IN_OUT STRING: of what length is given; of a reference:
                                  ///< ARRAY[*], to the first element of what is given
     std::size_t dimensions = 1;  ///< of ARRAY[*]
-    std::vector<Variable*> members = {};       ///< of a structure, a union
+    std::vector<Variable*> members = {};  ///< of a structure, a union
     std::uint8_t pack = 1;  ///< of these, of a block: bytes that a member is aligned to at most
     bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values

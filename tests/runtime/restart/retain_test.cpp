@@ -229,7 +229,7 @@ retain: [x, go]
 run: {for: 1 s}
 )");
     double place = 5;
-    for (const char* go : {"true", "false", "true"}) {
+    for (const char* go : {"true", "true", "false"}) {
         Diagnostics out;
         LoadOptions options;
         options.settings = {{"go", go}};

@@ -14,8 +14,7 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
         CHECK(&st::dialect_of(path) == &st::scl);
     for (const char* path : {"types.typ", "a/Global.var", "lib.fun", "Belt/IEC.prg"})
         CHECK(&st::dialect_of(path) == &st::automation_studio);
-    for (const char* path : {"plc.EXP", "plc.xml"})
-        CHECK(&st::dialect_of(path) == &st::codesys);
+    for (const char* path : {"plc.EXP", "plc.xml"}) CHECK(&st::dialect_of(path) == &st::codesys);
     for (const char* path : {"MAIN.TcPOU", "GVL.TcGVL", "T.TcDUT", "I.TcIO"})
         CHECK(&st::dialect_of(path) == &st::twincat);
 }
