@@ -778,7 +778,7 @@ def write_project(folder, nets):
 
 
 def write_export(folder, language, nets, name="drawn.xml"):
-    (folder / name).write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><types><pous>\n'
+    (folder / name).write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader productName="Beremiz"/><types><pous>\n'
                                + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
     return name
 
@@ -808,8 +808,9 @@ with tempfile.TemporaryDirectory() as temporary:
         nets = [make(draw, f"Net{i}") for i in range(batch)]
         drawn_as = (write_project(folder, nets) if language == "NWL" else write_folders(folder, nets) if language == "rows"
                     else write_export(folder, language, nets))
-        (folder / "said.st").write_text("".join(net.text() for net in nets))
-        a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", "said.st", nets)
+        said_as = "said.EXP" if language == "NWL" else "said.st"  # edges and counters of the dialect
+        (folder / said_as).write_text("".join(net.text() for net in nets))
+        a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", said_as, nets)
         if a != b:
             first = next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
             columns = [j for j, (x, y) in enumerate(zip(a[first].split(b","), b[first].split(b","))) if x != y]

@@ -231,7 +231,7 @@ void call_ton(struct ton* b) {
         b->et = 0;
         return;
     }
-    if (!b->running) b->start = twin_now;
+    if (!b->running) b->start = twin_now, b->preset = b->pt;
     b->running = 1;
     if (b->q) return;
     b->et = elapsed(b->start, b->pt);
@@ -246,7 +246,7 @@ void call_tof(struct tof* b) {
         return;
     }
     if (!b->q) return;
-    if (!b->running) b->start = twin_now;
+    if (!b->running) b->start = twin_now, b->preset = b->pt;
     b->running = 1;
     b->et = elapsed(b->start, b->pt);
     b->q = twin_now - b->start < b->pt;
@@ -256,6 +256,7 @@ void call_tp(struct tp* b) {
     const u8 edge = rises(b->in, &b->before);
     if (edge && !b->q) {
         b->start = twin_now;
+        b->preset = b->pt;
         b->q = 1;
     }
     if (b->q) {
