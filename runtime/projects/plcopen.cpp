@@ -113,7 +113,7 @@ class PlcopenProject {
             const pugi::xml_attribute type = instance.attribute("typeName");
             const bool is_typed = !file_.plain(type).empty();
             const pugi::xml_attribute named = is_typed ? type : instance.attribute("name");
-            made.programs.push_back({file_.plain(named), file_.mark(file_.part(named))});
+            made.programs.push_back({{file_.plain(named), file_.mark(file_.part(named))}});
         }
         to_.project.tasks.push_back(std::move(made));
     }

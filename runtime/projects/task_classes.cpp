@@ -67,8 +67,8 @@ void read_task_classes(const Reading& to, const std::string& path, const Mark& w
                          .priority = static_cast<std::int64_t>(number)};
         for (const pugi::xml_node program : element.children("Task"))
             if (file->plain(program.attribute("Disabled")) != "true")
-                task.programs.push_back({name_of_program(file->plain(program.attribute("Source"))),
-                                         file->mark_of_tag(program)});
+                task.programs.push_back({{name_of_program(file->plain(program.attribute("Source"))),
+                                          file->mark_of_tag(program)}});
         if (!task.programs.empty()) to.project.tasks.push_back(std::move(task));
     }
 }

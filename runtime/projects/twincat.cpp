@@ -192,7 +192,7 @@ ProjectTask task_of(const XmlFile& file, pugi::xml_node element) {
         .priority = number_of(file, element.child("Priority"))};
     for (const pugi::xml_node call : element.children("PouCall"))
         task.programs.push_back(
-            {file.plain(call.child("Name")), file.mark_of_tag(call.child("Name"))});
+            {{file.plain(call.child("Name")), file.mark_of_tag(call.child("Name"))}});
     return task;
 }
 
