@@ -4,6 +4,8 @@ namespace lineshaft {
 
 namespace {
 
+using namespace std::string_view_literals;
+
 constexpr LibraryFile files_of_libraries[] = {
 #include "blocks/libraries/libraries.inc"
 };

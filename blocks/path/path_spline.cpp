@@ -212,7 +212,7 @@ std::size_t quintic_between(const PathPoint& from, const PathPoint& to,
 }
 
 bool turns_back(const PathVector& a, const PathVector& b) {
-    constexpr double least_sine = 1e-6;
+    constexpr double least_turn = 1e-6;
     double aa = 0, ab = 0, off = 0, bb = 0;
     for (std::size_t i = 0; i < path_space; ++i) {
         aa += a[i] * a[i];
@@ -223,7 +223,7 @@ bool turns_back(const PathVector& a, const PathVector& b) {
         const double upright = aa * b[i] - ab * a[i];
         off += upright * upright;
     }
-    return ab < 0 && off <= least_sine * least_sine * aa * aa * bb;
+    return ab < 0 && off <= least_turn * least_turn * aa * aa * bb;
 }
 
 PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after) {
