@@ -137,7 +137,8 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
 ///            ( 'R_EDGE' | 'F_EDGE' ) ? ( ':=' Var_Init ) ? ';'
 ///          | Name ':' Data_Type 'AT' Direct ( ':=' Var_Init ) ? ';'
 /// Variable_List : Name ( ',' Name ) *
-/// Without a name an address is its name. OpenPLC writes it behind the type.
+/// Without a name an address is its name. OpenPLC writes it behind the type. In CODESYS `REF=` may
+/// stand for ':=' of a REFERENCE TO.
 void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const std::size_t first = p.at;
     const Word behind = p.next().word;
