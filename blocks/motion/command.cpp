@@ -1,10 +1,23 @@
 #include "blocks/motion/command.hpp"
 
+#include <cstring>
+#include <type_traits>
+
 #include <fmt/format.h>
 
 #include "blocks/inputs.hpp"
 
 namespace lineshaft {
+
+namespace {
+
+/// By their bytes: a request is of words only, and is compared in each scan.
+bool differ(const Request& a, const Request& b) {
+    static_assert(std::is_trivially_copyable_v<Request>);
+    return std::memcmp(&a, &b, sizeof a) != 0;
+}
+
+}  // namespace
 
 void CommandBlock::run(const Scan& now, const Context& context) {
     send(now, context);
@@ -15,7 +28,8 @@ void CommandBlock::send(const Scan& now, const Context& context) {
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
     const bool is_free = job.in == JobPlace::no_list;
-    if (updating && is_free && pins != job.request && is_at_work(context)) update(now, context);
+    if (updating && is_free && differ(pins, job.request) && is_at_work(context))
+        update(now, context);
 }
 
 bool CommandBlock::is_at_work(const Context& context) const {
