@@ -263,14 +263,19 @@ struct Axis {
     bool may_add(const PointMotion& next) const;
     bool may_wait(const Context& context, const Request& request) const;
 
-    // axis_sync.cpp: other axes are followed.
+    // axis_masters.cpp: what is seen of other axes.
     std::int64_t way_to(const Context& context, const Axis& leader, const Coupling& coupling,
                         int& links_left) const;
-    bool follows_itself(const Context& context) const;
     MotionState led_by(const Context& context, const MasterLink& link) const;
     MotionState master(const Context& context) const;
     bool admits(const MasterLink& link) const;
     MotionError check_masters(const Context& context, const Coupling& c) const;
+    bool is_steady(const Context& context) const;
+    MotionState planned(double t) const;
+    Forecast foresee(const Context& context) const;
+
+    // axis_sync.cpp: other axes are followed.
+    bool follows_itself(const Context& context) const;
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
                           const Start& from);
     MotionError get_onto_guide(const Context& context, const Moment& at, const MotionState& from);
@@ -302,9 +307,6 @@ struct Axis {
     void end_cam(const Context& context, const MotionState& leader, double x,
                  const CurvePoint& point);
     void reach(const Context& context);
-    bool is_steady(const Context& context) const;
-    MotionState planned(double t) const;
-    Forecast foresee(const Context& context) const;
 
     // axis_jobs.cpp: commands are taken up, told how far they are, and ended.
     void take_up(const Context& context, const Scan& now);

@@ -57,6 +57,11 @@ struct Coupling {
 
     bool operator==(const Coupling&) const = default;
 
+    bool is_measured() const {
+        return master.source == MasterValueSource::actual_value ||
+               second.source == MasterValueSource::actual_value;
+    }
+
     bool is_finite() const {
         for (const double x : {master.numerator, master.denominator, second.numerator,
                                second.denominator, master_sync, slave_sync, start_distance,
