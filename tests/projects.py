@@ -175,6 +175,16 @@ def check_configuration():
     for line in ("left: {type: Belt, task: quick, speed: 2, on: true}", "right: {type: Belt, task: quick, speed: -3, on: true}"):
         assert line in text, text
     run("run", "--quiet", "several.yaml")
+    write("placed.st", "PROGRAM main\n  VAR\n    start AT %IX0.2 : BOOL;\n    level AT %IW1 : INT;\n    lamp AT %QX0.0 : BOOL;\n"
+          "    speed AT %QW0 : INT;\n  END_VAR\n  lamp := NOT start;\n  speed := level;\nEND_PROGRAM\n\nCONFIGURATION Config0\n\n"
+          "  RESOURCE Res0 ON PLC\n    TASK task0(INTERVAL := T#20ms,PRIORITY := 0);\n    PROGRAM instance0 WITH task0 : main;\n"
+          "  END_RESOURCE\nEND_CONFIGURATION\n")
+    run("new", "placed", "--from", "placed.st")
+    text = (work / "placed.yaml").read_text()
+    for line in ("  IX0_2: false  # start", "  IW2: 0  # level", '  "%IX0.2": inputs.IX0_2', '"%QX0.0", "%QW0", "%IX0.2"'):
+        assert line in text, text
+    run("run", "--quiet", "placed.yaml", "--force", "inputs.IW2=7", "--trace", "placed.csv")
+    assert (work / "placed.csv").read_text().splitlines()[1].startswith("0,0,1,7,"), "lamp is no bit of speed"
 
 
 CHART = """PROGRAM PLC_PRG

@@ -221,6 +221,46 @@ std::vector<std::string> signals_of(const st::Library& library, const NewBlock& 
     return signals;
 }
 
+/// What its sources name of the process image.
+std::vector<Field> addresses_of(const st::Library& library) {
+    const auto image = std::ranges::find(library.kinds(), st::image_name, &BlockType::name);
+    if (image == library.kinds().end()) return {};
+    return {image->fields.begin(), image->fields.end()};
+}
+
+/// An input from outside for each address of the area I: `%IX0.3` is inputs.IX0_3.
+std::string inputs_text(const std::vector<Field>& addresses) {
+    std::string inputs, wires;
+    for (const Field& field : addresses) {
+        const bool is_number = field.unit.empty();
+        if (field.direction != Direction::input || !field.name.starts_with("%I") || !is_number)
+            continue;
+        const std::string name = plain_name(field.name.substr(1));
+        const std::string_view value = field.type == Type::boolean ? "false" : "0";
+        const std::string note =
+            field.doc.empty() ? ""
+                              : fmt::format("  # {}", field.doc.substr(0, field.doc.find('\n')));
+        inputs += fmt::format("  {}: {}{}\n", name, value, note);
+        wires += fmt::format("  \"{}\": inputs.{}\n", field.name, name);
+    }
+    if (inputs.empty()) return {};
+    return "inputs:                          # stimuli: changes them, see lineshaft form stimulus\n" +
+           inputs + "io:\n" + wires;
+}
+
+/// Addresses after what a program names itself, outputs before all others.
+void add_addresses(const std::vector<Field>& addresses, std::vector<std::string>& signals) {
+    const std::size_t most = signals.size() + most_signals;
+    for (const Direction direction : {Direction::output, Direction::input, Direction::local})
+        for (const Field& field : addresses) {
+            const bool is_input = field.name.starts_with("%I");
+            const bool is_meant =
+                field.direction == direction && is_input == (direction == Direction::input);
+            if (is_meant && signals.size() < most)
+                signals.push_back(fmt::format("\"{}\"", field.name));
+        }
+}
+
 std::string text_of(const projects::Project& project, const std::vector<NewTask>& tasks,
                     const std::vector<NewBlock>& blocks) {
     std::string text = "tasks:                           # the larger priority runs first\n";
@@ -333,14 +373,16 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     std::ranges::move(axes_of(*library, owners), std::back_inserter(blocks));
     std::ranges::move(owners, std::back_inserter(blocks));
     const std::string name = file.stem().string();
+    const std::vector<Field> addresses = addresses_of(*library);
     std::string text = fmt::format(
         "# Around a project of another tool. Try, and then change:\n"
         "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
         "#   lineshaft check {0}.yaml{1}\n"
         "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}run: {{for: 1 s}}\n",
         name, include_option(path, file), sources_text(*chosen, file),
-        text_of(project, tasks, blocks));
-    const std::vector<std::string> signals = signals_of(*library, programs.front());
+        text_of(project, tasks, blocks) + inputs_text(addresses));
+    std::vector<std::string> signals = signals_of(*library, programs.front());
+    add_addresses(addresses, signals);
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,
                             fmt::join(signals, ", "));

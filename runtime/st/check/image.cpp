@@ -40,17 +40,18 @@ const Type& type_at(const ImageAddress& address) {
     return address.bits == 1 ? bool_type : bits_type(address.bits);
 }
 
-Image& image_of(Checking& c) {
+Image& image_of(Checking& c, const Place& at) {
     Image& image = c.checked.image;
     if (image.global < 0) {
         image.global = static_cast<int>(c.checked.globals.size());
+        image.sizes_are_apart = at.dialect().addresses_of_sizes_are_apart;
         c.checked.globals.push_back({std::string(image_name), &c.make_type(Kind::structure, "")});
     }
     return image;
 }
 
 void put(Checking& c, Variable& variable, const ImageAddress& address) {
-    Image& image = image_of(c);
+    Image& image = image_of(c, variable.name.place);
     variable.space = Space::image;
     variable.global = image.global;
     variable.address = address;
@@ -88,8 +89,8 @@ std::pair<std::uint64_t, std::uint64_t> range_of(const Variable& variable) {
             first + (is_bit ? 1 : packed_bits(*variable.type, variable.name.place.dialect()))};
 }
 
-bool cross(const Variable& a, const Variable& b) {
-    if (a.address.area != b.address.area) return false;
+bool cross(const Image& image, const Variable& a, const Variable& b) {
+    if (image.part_of(a.address) != image.part_of(b.address)) return false;
     const auto [first, first_end] = range_of(a);
     const auto [second, second_end] = range_of(b);
     if (first >= second_end || second >= first_end) return false;
@@ -107,7 +108,7 @@ void warn_of_crossing(Checking& c, const Image& image) {
     constexpr std::size_t most_neighbours = 64;
     for (std::size_t i = 0; i < declared.size(); ++i)
         for (std::size_t k = i + 1; k < std::min(declared.size(), i + most_neighbours); ++k) {
-            if (!cross(*declared[i], *declared[k])) continue;
+            if (!cross(image, *declared[i], *declared[k])) continue;
             const Dialect& dialect = declared[k]->name.place.dialect();
             c.warn(code::addresses_overlap, declared[k]->name.place,
                    fmt::format("'{}' at {} has bytes of '{}' at {}", declared[k]->text,
@@ -151,7 +152,7 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
 const Type* check_direct(Checking& c, Expression& e) {
     const auto address = address_of(c, e.token);
     if (!address) return nullptr;
-    Image& image = image_of(c);
+    Image& image = image_of(c, e.place);
     const auto is_there = [&](const Variable* variable) {
         return variable->is_direct && variable->type->is_scalar() &&
                variable->address == *address &&
@@ -174,7 +175,7 @@ const Type* check_direct(Checking& c, Expression& e) {
 Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
     constexpr std::string_view names[areas] = {"%IB0..%IB1023", "%QB0..%QB1023", "%MB0..%MB1023"};
     const std::string_view name = names[static_cast<std::size_t>(area)];
-    for (Variable* known : image_of(c).variables)
+    for (Variable* known : image_of(c, at.place).variables)
         if (known->text == name && &known->name.place.dialect() == &at.place.dialect())
             return *known;
     Type& array = c.make_type(Kind::array, {});
@@ -189,19 +190,19 @@ Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
 void finish_image(Checking& c) {
     Image& image = c.checked.image;
     if (image.global < 0) return;
-    std::uint64_t sizes[areas] = {};
+    std::uint64_t sizes[Image::parts] = {};
     for (const Variable* variable : image.variables) {
-        std::uint64_t& size = sizes[static_cast<std::size_t>(variable->address.area)];
+        std::uint64_t& size = sizes[image.part_of(variable->address)];
         size = std::max(size, (range_of(*variable).second + 7) / 8);
     }
     for (const ImageAddress& address : c.tree.addresses) {
-        std::uint64_t& size = sizes[static_cast<std::size_t>(address.area)];
+        std::uint64_t& size = sizes[image.part_of(address)];
         size = std::max<std::uint64_t>(size, address.end());
     }
     std::uint64_t at = 0;
-    for (std::size_t area = 0; area < areas; ++area) {
-        image.begins[area] = static_cast<std::uint32_t>(at);
-        at += (sizes[area] + 7) / 8 * 8;
+    for (std::size_t part = 0; part < Image::parts; ++part) {
+        image.begins[part] = static_cast<std::uint32_t>(at);
+        at += (sizes[part] + 7) / 8 * 8;
     }
     image.bytes = static_cast<std::uint32_t>(at);
     const_cast<Type&>(*c.checked.globals[static_cast<std::size_t>(image.global)].type).slots =

@@ -57,12 +57,11 @@ const Dialect twincat = [] {
     return made;
 }();
 
-/// PLCopen XML of Beremiz, OpenPLC and others, which MatIEC compiles: as loose as CODESYS, with the
-/// standard's blocks and texts.
-static const Dialect matiec = [] {
+const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::none;
-    made.whole_reals_have_points = made.enumerations_begin_at_zero = false;
+    made.addresses_of_sizes_are_apart = true;
+    made.whole_reals_have_points = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.most_aligned = iec.most_aligned;
     made.text_length = iec.text_length;
     return made;
@@ -83,7 +82,17 @@ const Dialect scl = {.sign_precedes_power = false,
                      .zero_divides_to_zero = true,
                      .texts_are_windows_1252 = true};
 
-const Dialect& dialect_of(std::string_view path) {
+/// `RESOURCE Res0 ON PLC` stands in a line of its own.
+static bool is_of_matiec(std::string_view text) {
+    const std::size_t on = text.find(" ON PLC");
+    if (on == text.npos) return false;
+    const std::size_t line = text.find_last_of("\r\n", on) + 1;
+    const std::size_t word = text.find_first_not_of(" \t", line);
+    const std::string_view named = text.substr(word, on - word);
+    return named.starts_with("RESOURCE ") && named.rfind(' ') == named.find(' ');
+}
+
+const Dialect& dialect_of(std::string_view path, std::string_view text) {
     struct Ending {
         std::string_view ending;
         const Dialect& dialect;
@@ -105,7 +114,8 @@ const Dialect& dialect_of(std::string_view path) {
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
-    return it == std::end(endings) ? scl : it->dialect;
+    if (it == std::end(endings)) return scl;
+    return &it->dialect == &iec && is_of_matiec(text) ? matiec : it->dialect;
 }
 
 }  // namespace lineshaft::st

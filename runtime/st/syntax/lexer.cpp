@@ -490,7 +490,7 @@ class Lexer {
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {
     const std::string& named = file->read_as.empty() ? file->path : file->read_as;
-    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(named);
+    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(named, file->text);
     return Lexer(std::make_shared<const Source>(Source{file, dialect, kind}), out).read();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <deque>
 #include <string>
@@ -290,17 +291,24 @@ struct Global {
 /// The instance that has a program's process image. No name of a source is like it.
 inline constexpr std::string_view image_name = "%";
 
-/// What sources see of the process image: bytes of a global of its own, area by area.
+/// What sources see of the process image: bytes of a global of its own, area by area; of each area
+/// size by size, where these are apart.
 struct Image {
+    static constexpr std::size_t sizes = 5, parts = areas * sizes;  ///< X, B, W, D, L
+
     int global = -1;  ///< none: no source names an address
     std::vector<Variable*> variables = {};
-    std::uint32_t begins[areas] = {};  ///< [bytes]
+    bool sizes_are_apart = false;      ///< as the dialect of the first source that names one has it
+    std::uint32_t begins[parts] = {};  ///< [bytes]
     std::uint32_t bytes = 0;
 
     /// Of its bytes, from the first on.
     std::uint64_t bit_of(const ImageAddress& at) const {
-        const std::uint64_t byte = begins[static_cast<std::size_t>(at.area)] + at.byte;
-        return 8 * byte + at.bit;
+        return 8 * (std::uint64_t{begins[part_of(at)]} + at.byte) + at.bit;
+    }
+    std::size_t part_of(const ImageAddress& at) const {
+        const std::size_t size = at.bits == 1 ? 0 : std::bit_width(at.bits / 8U);
+        return static_cast<std::size_t>(at.area) * sizes + (sizes_are_apart ? size : 0);
     }
 };
 

@@ -14,6 +14,10 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
         CHECK(&st::dialect_of(path) == &st::scl);
     for (const char* path : {"types.typ", "a/Global.var", "lib.fun", "Belt/IEC.prg"})
         CHECK(&st::dialect_of(path) == &st::automation_studio);
+    const auto written = [](std::string_view text) { return &st::dialect_of("plc.st", text); };
+    CHECK(written("CONFIGURATION Config0\r\n\r\n  RESOURCE Res0 ON PLC\r\n") == &st::matiec);
+    CHECK(written("RESOURCE Cpu ON Controller // ON PLC") == &st::iec);
+    CHECK(written("RESOURCE Cpu ON Controller\n// it runs ON PLC") == &st::iec);
     for (const char* path : {"plc.EXP", "plc.xml"}) CHECK(&st::dialect_of(path) == &st::codesys);
     for (const char* path : {"MAIN.TcPOU", "GVL.TcGVL", "T.TcDUT", "I.TcIO"})
         CHECK(&st::dialect_of(path) == &st::twincat);
