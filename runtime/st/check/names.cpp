@@ -34,7 +34,7 @@ const Type* unknown_name(Checking& c, const Expression& e) {
                    : c.fail(code::wrong_place, e.place, fmt::format("'{}' is a function", name),
                             fmt::format("call it: {}()", name));
     }
-    return undeclared(c, e.token, e.place, visible_names(c));
+    return undeclared(c, e.token, e.place);
 }
 
 Variable* find_in_any_capitals(Checking& c, const Token& token) {
@@ -47,6 +47,19 @@ Variable* find_in_any_capitals(Checking& c, const Token& token) {
             if (Variable* variable = declare_early(c, *constant)) return variable;
     }
     return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
+}
+
+/// What a name that nobody declares may be meant for.
+std::vector<std::string> visible_names(Checking& c) {
+    std::vector<std::string> names;
+    for (const Routine* r = c.routine; r; r = r->owner)
+        for (const Variable* variable : all_variables(*r)) names.emplace_back(variable->text);
+    for (const auto& [name, variable] : c.globals) names.emplace_back(name);
+    for (const auto& [name, value] : c.users.values) names.emplace_back(name);
+    for (const auto& [name, routine] : c.users.routines)
+        if (!routine->type) names.emplace_back(name);
+    std::ranges::sort(names);
+    return names;
 }
 
 /// A value of an enumeration is written exactly so.
@@ -92,25 +105,15 @@ bool is_told_by_capitals(Checking& c, const Token& name, const NameMap<Place>& n
     return true;
 }
 
-std::vector<std::string> visible_names(Checking& c) {
-    std::vector<std::string> names;
-    for (const Routine* r = c.routine; r; r = r->owner)
-        for (const Variable* variable : all_variables(*r)) names.emplace_back(variable->text);
-    for (const auto& [name, variable] : c.globals) names.emplace_back(name);
-    for (const auto& [name, value] : c.users.values) names.emplace_back(name);
-    for (const auto& [name, routine] : c.users.routines)
-        if (!routine->type) names.emplace_back(name);
-    std::ranges::sort(names);
-    return names;
-}
-
 const Type* undeclared(Checking& c, const Token& name, Place place,
-                       const std::vector<std::string>& names) {
+                       std::span<const std::string_view> functions) {
     if (may_be_elsewhere(c, place)) return nullptr;
     for (const Routine* r = c.routine; r; r = r->owner)
         if (r->has_unknown_base) return nullptr;
     if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
         return nullptr;
+    std::vector<std::string> names = visible_names(c);
+    names.insert(names.end(), functions.begin(), functions.end());
     const auto near = nearest(name.text, names);
     const bool is_text =
         name.quoted &&

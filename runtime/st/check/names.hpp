@@ -11,11 +11,10 @@ bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test = 
 /// B&R's own libraries have such: the first one is meant by both, which is told.
 bool is_told_by_capitals(Checking& c, const Token& name, const NameMap<Place>& names);
 
-/// What a suggestion is chosen from.
-std::vector<std::string> visible_names(Checking& c);
-/// Told once in a block, unless it may be declared in what was not understood.
+/// Told once in a block, unless it may be declared in what was not understood. One of `functions`
+/// may be meant, too.
 const Type* undeclared(Checking& c, const Token& name, Place place,
-                       const std::vector<std::string>& names);
+                       std::span<const std::string_view> functions = {});
 
 /// `e` means the variable; one that is constant is its value.
 const Type* use(Checking& c, Expression*& e, Variable& variable);

@@ -103,7 +103,7 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
                           fmt::format("'{}' is a kind of block, not an instance", name.text),
                           "declare one in VAR, and call that");
         if (const auto typed = check_typed_function(c, e)) return *typed;
-        std::vector<std::string> names = visible_names(c);
+        std::vector<std::string_view> names;
         for (const StandardFunction* f : standard_functions()) names.emplace_back(f->name);
         if (c.is_in_test())
             for (const TestStatement& known : test_statements) names.emplace_back(known.name);
