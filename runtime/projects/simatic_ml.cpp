@@ -174,17 +174,45 @@ class SimaticObject {
 
     /// `list[2].x := 3;`: what the declaration does not say.
     void add_values(pugi::xml_node member, const std::string& before, bool is_instance) {
-        const std::string name = fmt::format("{}\"{}\"", before, name_of(member));
-        if (const auto value = member.child("StartValue"); value && is_instance)
+        const std::string name =
+            fmt::format("{}\"{}\"{}", before, name_of(member), indices_of(member));
+        const bool is_one = name.find(an_index) == name.npos;
+        if (const auto value = member.child("StartValue"); value && is_instance && is_one)
             add_value(name, value);
         for (const auto element : member.children("Subelement"))
             if (const auto value = element.child("StartValue"))
-                add_value(fmt::format("{}[{}]", name, file_.plain(element.attribute("Path"))),
-                          value);
+                add_value(indexed(name, file_.plain(element.attribute("Path"))), value);
         for (const auto part : member.children("Member")) add_values(part, name + ".", is_instance);
         for (const auto section : member.child("Sections").children("Section"))
             for (const auto part : section.children("Member")) add_values(part, name + ".", true);
     }
+    static constexpr char an_index = '\1';
+
+    /// `[1,1]`, with a mark in place of each number, of an array of two dimensions.
+    std::string indices_of(pugi::xml_node member) const {
+        const std::string type = lower(file_.plain(member.attribute("Datatype")));
+        if (!type.starts_with("array")) return {};
+        std::string made;
+        const std::size_t end = type.find(']');
+        for (std::size_t at = 0; (at = type.find("..", at)) < end; at += 2)
+            made += fmt::format("{}{}", made.empty() ? '[' : ',', an_index);
+        return made.empty() ? made : made + ']';
+    }
+    /// `2,5` are those of all arrays on the way, from the outermost on.
+    static std::string indexed(const std::string& name, std::string_view path) {
+        std::string made;
+        for (const char c : name) {
+            if (c != an_index) {
+                made += c;
+                continue;
+            }
+            const std::size_t end = std::min(path.find(','), path.size());
+            made += path.substr(0, end);
+            path.remove_prefix(std::min(end + 1, path.size()));
+        }
+        return made;
+    }
+
     void add_value(const std::string& name, pugi::xml_node value) {
         if (file_.plain(value).empty()) return;
         write(fmt::format("    {} := ", name), value);

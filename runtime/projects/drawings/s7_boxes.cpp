@@ -30,6 +30,11 @@ Value counted(Running& r, std::string_view sign) {
     return power;
 }
 
+/// `MN` and `MX` of an edition are `min` and `max` of others.
+Value operand_of(const Running& r, std::string_view pin, std::string_view other) {
+    return r.operand(r.it.find(pin) ? pin : other);
+}
+
 /// `min`, `value`, `max`, of one type: a whole number is given as it is.
 Value scaled(Running& r, std::string_view function) {
     return result(r, r.call(function, {{"MIN", r.operand("min")},
@@ -64,7 +69,7 @@ void statement(Running& r, const S7Instruction::Pin* target, std::string_view fu
 bool writes_to_out(std::string_view name) {
     static constexpr std::string_view all[] = {"move_blk", "umove_blk", "fill_blk", "ufill_blk",
                                                "scatter",  "gather",    "rd_sys_t", "rd_loc_t",
-                                               "strg_val", "val_strg"};
+                                               "strg_val", "val_strg",  "scale",    "unscale"};
     return std::ranges::any_of(all, st::is_called(name));
 }
 
@@ -114,12 +119,14 @@ Value conversion(Running& r) {
 }
 
 Value limit(Running& r) {
-    return result(
-        r, r.call("LIMIT",
-                  {{"MN", r.operand("min")}, {"IN", r.operand("in")}, {"MX", r.operand("max")}}));
+    return result(r, r.call("LIMIT", {{"MN", operand_of(r, "mn", "min")},
+                                      {"IN", r.operand("in")},
+                                      {"MX", operand_of(r, "mx", "max")}}));
 }
 
+/// SCALE of the S7-300 has other pins.
 Value scale(Running& r) {
+    if (r.it.find("hi_lim")) return other_function(r);
     return scaled(r, "SCALE_X");
 }
 

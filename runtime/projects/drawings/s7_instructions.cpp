@@ -173,20 +173,21 @@ Value timer_coil(Running& r) {
     return power;
 }
 
-Value timer_command(Running& r, std::string_view function) {
+/// `given` is nothing, or the time that it gets.
+Value timer_command(Running& r, std::string_view function, const Value& given) {
     const Value power = r.enable();
     const Value timer = r.it.find("timer") ? r.operand("timer") : r.operand("operand");
     r.open(power);
-    r.to.append(r.call(function, {{"PT", r.operand("pt")}, {"TIMER", timer}}).text);
+    r.to.append(r.call(function, {{"PT", given}, {"TIMER", timer}}).text);
     r.write(";\n");
     r.close(power);
     return power;
 }
 Value timer_reset(Running& r) {
-    return timer_command(r, "RESET_TIMER");
+    return timer_command(r, "RESET_TIMER", {});
 }
 Value timer_preset(Running& r) {
-    return timer_command(r, "PRESET_TIMER");
+    return timer_command(r, "PRESET_TIMER", r.operand("pt"));
 }
 
 Value jump(Running& r, const Value& when) {
@@ -269,7 +270,7 @@ constexpr Row rows[] = {
     {rising_coil, " p_coil "},
     {falling_coil, " n_coil "},
     {timer_coil, " tp_coil ton_coil tof_coil tonr_coil "},
-    {timer_reset, " rt_coil "},
+    {timer_reset, " rt_coil resetiectimercoil "},
     {timer_preset, " pt_coil "},
     {jump_coil, " jumpcoil "},
     {inverted_jump_coil, " i_jumpcoil "},

@@ -51,7 +51,9 @@ Value Running::call(std::string_view function, const std::vector<Argument>& give
         if (value.is_empty()) continue;
         made.text.write(between, it.place);
         if (!pin.empty())
-            made.text.write(fmt::format("{} {} ", pin, is_output ? "=>" : ":="), it.place);
+            made.text.write(fmt::format("{0}{1}{0} {2} ", is_plain(pin) ? "" : "\"", pin,
+                                        is_output ? "=>" : ":="),
+                            it.place);
         made.text.append(value.text);
         between = ", ";
     }

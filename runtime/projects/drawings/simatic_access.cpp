@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/projects/drawings/values.hpp"
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
@@ -21,12 +22,6 @@ std::string_view scope_of(pugi::xml_node node) {
 
 bool is_local(std::string_view scope) {
     return scope.starts_with("Local");
-}
-
-/// That needs no quotes behind a '.'.
-bool is_plain(std::string_view name) {
-    return !name.empty() && is_letter(name.front()) &&
-           std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
 bool has_tokens(pugi::xml_node node) {
@@ -85,7 +80,7 @@ void SimaticAccess::write_token(Excerpts& to, pugi::xml_node token) const {
     } else if (is_called(token, "Access")) {
         to.append(text_of(token));
     } else if (is_called(token, "Parameter")) {
-        file_.copy(to, token.attribute("Name"));
+        write_name(to, token, !is_plain(file_.plain(token.attribute("Name"))));
         write_tokens(to, token);
     } else if (is_called(token, "Component")) {
         write_name(to, token, !is_plain(file_.plain(token.attribute("Name"))));
@@ -125,7 +120,7 @@ void SimaticAccess::write_index(Excerpts& to, pugi::xml_node component) const {
 void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool is_local) const {
     if (const auto value = constant.child("ConstantValue")) return file_.copy(to, value);
     if (is_local) to.write("#", place(constant));
-    write_name(to, constant, !is_local);
+    write_name(to, constant, !is_local || !is_plain(file_.plain(constant.attribute("Name"))));
 }
 
 /// Bits from the beginning of an area.

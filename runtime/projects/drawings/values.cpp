@@ -99,6 +99,11 @@ bool compares(std::string_view function) {
     return std::ranges::any_of(all, [&](auto name) { return st::same_name(name, function); });
 }
 
+bool is_plain(std::string_view name) {
+    return !name.empty() && is_letter(name.front()) &&
+           std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
 Value::Form shape_of(std::string_view expression) {
     constexpr std::string_view more = "_.%#^:$'";
     const bool is_atom = std::ranges::all_of(expression, [&](char c) {

@@ -40,6 +40,9 @@ Value kept_in(Excerpts& to, const std::string& variable, const Value& value, con
 std::string_view infix_of(std::string_view function);
 bool compares(std::string_view function);
 
+/// That needs no quotes behind a '.', or before a ':='.
+bool is_plain(std::string_view name);
+
 /// Of an expression as it is written at an element.
 Value::Form shape_of(std::string_view expression);
 

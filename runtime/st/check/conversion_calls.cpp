@@ -122,6 +122,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     const Type* source = read->from.empty() ? nullptr : find(read->from);
     if (!target || (!read->from.empty() && !source))
         return is_told ? std::optional<const Type*>(nullptr) : std::nullopt;
+    const bool is_function = read->truncates && read->from.empty() && target->is_real();
+    if (is_function) return {};
     if (read->to_bcd || read->from_bcd) return check_bcd(c, e, source, *target, read->to_bcd);
     if (e->arguments.size() != 1)
         return c.fail(code::wrong_arguments, e->operands[0]->place,

@@ -1,6 +1,7 @@
 #include "runtime/st/check/image.hpp"
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -18,7 +19,8 @@ std::string text_in(const Dialect& dialect, ImageAddress address) {
 }
 
 std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
-    auto address = read_address(token.text);
+    auto address =
+        token.text.starts_with('%') ? read_address(token.text) : read_classic_address(token.text);
     const bool is_hierarchical =
         address && address->bits > 1 && token.text.find('.') != token.text.npos;
     if (address && token.place.dialect().addresses_count_sizes && !is_hierarchical)
@@ -139,7 +141,10 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
         if (area == 'Q') variable.pin = Section::output;
         return;
     }
-    const auto address = address_of(c, at);
+    auto address = address_of(c, at);
+    const bool begins_byte = address && address->bits == 1 && address->bit == 0;
+    if (begins_byte && !variable.type->is_scalar() && at.place.dialect().packs_as_s7)
+        address->bits = 8;
     if (!address || !fits(c, variable, *address, at)) return void(variable.type = nullptr);
     const bool stays = !c.routine || c.routine->has_instances();
     if (is_of_program(c, variable)) variable.section = Section::local;

@@ -9,6 +9,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
 
@@ -223,6 +224,12 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return use_object(c, e, *object_type(c, *expected));
     if (same_name(token.text, "null") && !token.quoted && !token.local)
         return become(c, e, null_type, {});
+    if (token.place.source && token.place.dialect().packs_as_s7 &&
+        read_classic_address(token.text)) {
+        e = make_copy(c, *e);
+        e->token.word = Word::direct;
+        return check_direct(c, *e);
+    }
     return unknown_name(c, *e);
 }
 

@@ -21,8 +21,10 @@ std::optional<const Type*> check_typed_function(Checking& c, Expression*& e) {
     const StandardFunction* standard = find_standard_function(name);
     if (!type || !standard || standard->typing == Typing::statement) return {};
     Expression* call = make_call(c, *e, make_name(c, *e->operands[0], name), e->arguments);
-    const Type* result = check_standard_function(c, call, type);
+    const bool is_rounded = standard->result == Generic::any_int && type->is_real();
+    const Type* result = check_standard_function(c, call, is_rounded ? &lint_type : type);
     if (!result) return nullptr;
+    if (is_rounded) return e = call, convert_result(c, e, *result, *type);
     const bool fits = result->kind == Kind::boolean || same_type(*result, *type);
     if (!fits && !widens(*result, *type))
         return c.fail(code::conversion_may_lose, e->place,

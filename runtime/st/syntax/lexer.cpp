@@ -11,6 +11,7 @@
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
 namespace lineshaft::st {
@@ -270,8 +271,10 @@ class Lexer {
             ++at_;
             return void(add(*word));
         }
+        if (!after_dot && is_classic_bit(text)) return skip_bit();
         if (skip_picture(text)) return;
         const std::optional<Word> word = word_of(text);
+        if (is_title(text)) return add(Word::name), skip_to_end_of_line();
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
         if (!word || after_dot || is_variable) return void(add(Word::name));
         add(*word);
@@ -289,6 +292,23 @@ class Lexer {
         if (!assigned || new_line_) return {};
         if (same_name(text, "s")) return Word::set_assign;
         return same_name(text, "r") ? std::optional(Word::reset_assign) : std::nullopt;
+    }
+
+    /// `M0` of `M0.3`, as STEP 7 V5 writes it.
+    bool is_classic_bit(std::string_view text) const {
+        return tokens_.source->dialect.packs_as_s7 && peek() == '.' && is_digit(peek(1)) &&
+               text_[start_] != '"' && read_classic_address(fmt::format("{}.0", text)).has_value();
+    }
+    void skip_bit() {
+        at_ += 2;
+        add(Word::direct);
+    }
+
+    /// `TITLE = any text`, to the end of its line.
+    bool is_title(std::string_view text) const {
+        if (!new_line_ || !same_name(text, "title")) return false;
+        const std::size_t next = text_.find_first_not_of(" \t", at_);
+        return next != std::string_view::npos && text_[next] == '=';
     }
 
     /// A ':', ':=' or ',' follows.

@@ -207,6 +207,16 @@ std::optional<std::string> read_text(std::string_view text, bool is_wide) {
     return out;
 }
 
+std::optional<ImageAddress> read_classic_address(std::string_view text) {
+    constexpr std::string_view sizes = "BWD";
+    const bool has_size = text.size() > 1 && sizes.find(upper(text[1])) != sizes.npos;
+    if (text.empty() || has_size == (text.find('.') != text.npos)) return {};
+    std::string full = "%" + std::string(text);
+    const char area = upper(text.front());
+    full[1] = area == 'E' ? 'I' : area == 'A' ? 'Q' : area;
+    return read_address(full);
+}
+
 std::string to_string(Wide value) {
     if (value < 0) return "-" + to_string(-value);
     const auto low = static_cast<std::uint64_t>(value % 10'000'000'000'000'000'000U);

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/model/address.hpp"
 #include "runtime/st/syntax/constant.hpp"
 
 namespace lineshaft::st {
@@ -27,6 +28,9 @@ std::optional<Wide> read_moment(std::string_view text);
 /// The characters of a text between its quotes: `$'`, `$$`, `$L`, `$N`, `$P`, `$R`, `$T`, `$0A`;
 /// `''` is one, but in a wide one, `"..."`.
 std::optional<std::string> read_text(std::string_view text, bool is_wide = false);
+
+/// `M0.3`, `EW4`: as STEP 7 V5 writes addresses, without a '%', the areas in German, too (E, A).
+std::optional<ImageAddress> read_classic_address(std::string_view text);
 
 std::string to_string(Wide value);
 

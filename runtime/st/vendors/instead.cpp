@@ -34,7 +34,6 @@ constexpr Instead functions_of_vendors[] = {
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
     {" s_move ", "assign the STRING with ':='"},
     {" t_conv ", "write a conversion, as TIME_TO_DINT(x)"},
-    {" scale unscale ", "write SCALE_X(MIN := low, VALUE := NORM_X(...), MAX := high)"},
     {" fill ", "assign the elements in a FOR"},
     {" join ", "write CONCAT(a, b, ...)"},
     {" demux ", "write a CASE"},
