@@ -184,7 +184,9 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
 Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
-    const Type* type = parameter.type->is_open ? &string_type : parameter.type;
+    const Type* type = !parameter.type->is_open  ? parameter.type
+                       : parameter.type->is_wide ? &wide_string_type
+                                                 : &string_type;
     Variable& own = c.make_variable(*c.routine, {}, {}, type);
     depend(c, own.type, call.place);
     c.routine->lends = true;

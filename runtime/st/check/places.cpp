@@ -151,7 +151,9 @@ const Type* check_index(Checking& c, Expression*& node) {
             take_type(c, argument.value, lint_type, {.integer = value});
         }
         if (of_text)
-            type = e.place.dialect().texts_are_bytes ? &bits_type(8) : &char_type;
+            type = e.place.dialect().texts_are_bytes ? &bits_type(type->is_wide ? 16 : 8)
+                   : type->is_wide                   ? &wide_char_type
+                                                     : &char_type;
         else
             type = type->element;
     }

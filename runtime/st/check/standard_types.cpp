@@ -266,9 +266,11 @@ const Type* check_bit_number(Checking& c, Expression& call, const Type* expected
 
 const Type* check_texts(Checking& c, Expression& call) {
     const StandardFunction& f = *call.standard;
+    bool is_wide = false;
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
         Expression*& value = call.arguments[i].value;
         const bool is_text = f.parameter(i).type == Generic::text;
+        is_wide |= is_text && value->type->is_wide;
         if (is_text && value->type->is_character) coerce(c, value, string_type);
         if (!is_text) become_number(c, value);
         const Type& type = *value->type;
@@ -278,7 +280,7 @@ const Type* check_texts(Checking& c, Expression& call) {
                                       is_text ? "a STRING" : "a whole number", describe(type)));
         if (type.is_any() && !coerce(c, value, lint_type)) return nullptr;
     }
-    return f.result == Generic::text ? &string_type : &int_type;
+    return f.result != Generic::text ? &int_type : is_wide ? &wide_string_type : &string_type;
 }
 
 const Type* check_capacity(Checking& c, Expression*& e) {
