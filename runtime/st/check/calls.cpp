@@ -113,11 +113,14 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);
-    const bool fits = same_type(given, *type) || derives ||
-                      (parameter.section == Section::in_out
-                           ? texts && type->is_open
-                           : texts || (type->is_scalar() &&
-                                       (widens(*type, given) || are_same_pattern(*type, given))));
+    const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
+                          type->is_integer() && given.is_integer();  // of a date: any integer
+    const bool fits =
+        same_type(given, *type) || derives ||
+        (parameter.section == Section::in_out
+             ? texts && type->is_open
+             : texts || is_split ||
+                   (type->is_scalar() && (widens(*type, given) || are_same_pattern(*type, given))));
     note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,

@@ -36,6 +36,15 @@ void write_name(Writing& w, const Type& type, Slot number, Slot text) {
     w.land(end);
 }
 
+/// T#0s is 'T#0ms' in CODESYS and TwinCAT.
+void write_no_time(Writing& w, Slot number, Slot text) {
+    Jumps end;
+    w.jump(Op::jump_if, 0, number, end);
+    constexpr std::string_view none_at_all = "T#0ms";
+    w.put(Op::text_copy, text, constant_text(w, none_at_all), w.constant_slot(none_at_all.size()));
+    w.land(end);
+}
+
 Slot text_conversion(Writing& w, const Expression& e) {
     const Expression& from = *e.operands[0];
     if (from.type->kind == Type::Kind::text) return text_address(w, from);
@@ -56,6 +65,9 @@ Slot text_conversion(Writing& w, const Expression& e) {
     }
     if (from.type->is_time()) {
         w.put(Op::text_of_time, made, number, static_cast<Slot>(from.type->kind));
+        if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
+            e.place.dialect().vendor == Vendor::codesys)
+            write_no_time(w, number, made);
         return made;
     }
     const Op op = from.type->kind == Type::Kind::boolean ? Op::text_of_truth
