@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -352,6 +353,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("{} is out of range for {}", to_string(e->constant.integer),
                                       describe(to)));
+        guard_range(c, e, to);
         return convert(c, e, to);
     }
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
