@@ -152,8 +152,9 @@ std::string text_of(const Seat& seat) {
         case Kind::handle:
             return handle_text(seat);
         case Kind::text: {
-            const auto length = std::min<std::uint64_t>(
-                read<std::uint64_t>(seat.at), seat.type->is_open ? 1 << 16 : seat.type->length);
+            const auto length =
+                std::min<std::uint64_t>(read<std::uint64_t>(seat.at),
+                                        seat.type->is_open ? 1 << 16 : seat.type->text_bytes());
             return st::text_literal(
                 {reinterpret_cast<const char*>(seat.at + 8), static_cast<std::size_t>(length)});
         }

@@ -149,9 +149,9 @@ std::vector<std::string_view> methods_behind(const Routine& block) {
     return names;
 }
 
-/// FB_init is called first, then what each declares of its variable is assigned, then comes what
-/// follows.
-enum class Phase : std::uint8_t { init, behind_init };
+/// What members of structures begin with is assigned first, then FB_init is called, then what each
+/// declares of its variable is assigned, then comes what follows.
+enum class Phase : std::uint8_t { members, init, behind_init };
 
 /// Where what is constructed stands, and who counts through its elements.
 struct Constructing {
@@ -162,13 +162,15 @@ struct Constructing {
 };
 
 /// There is something to call of it then.
-bool is_called(Phase phase, const Type* type) {
+bool is_called(const Checking& c, Phase phase, const Type* type) {
     if (!type) return false;
-    if (type->kind == Kind::array) return is_called(phase, type->element);
+    if (type->kind == Kind::array) return is_called(c, phase, type->element);
     if (type->kind == Kind::structure)
-        return std::ranges::any_of(
-            type->members, [&](const Variable* member) { return is_called(phase, member->type); });
-    if (type->kind != Kind::block) return false;
+        return std::ranges::any_of(type->members, [&](const Variable* member) {
+            const bool begins = phase == Phase::members && c.begins_of_members.contains(member);
+            return begins || is_called(c, phase, member->type);
+        });
+    if (type->kind != Kind::block || phase == Phase::members) return false;
     return phase == Phase::init ? constructor_of(*type) != nullptr
                                 : !methods_behind(*type->routine).empty();
 }
@@ -178,6 +180,13 @@ const Expression* each_of(const std::vector<Argument>* values) {
     if (!values || values->size() != 1 || values->front().is_named()) return nullptr;
     const Expression* list = values->front().value;
     return list && list->kind == E::list && !list->is_structure() ? list : nullptr;
+}
+
+/// A reference begins with what it refers to.
+Statement* assign_first(Checking& c, Expression* to, const Expression& value, const Type& type) {
+    Statement* made = make_assignment(c, value.place, to, make_copy(c, value));
+    if (type.is_alias()) made->op = Word::reference_assign;
+    return made;
 }
 
 void construct(Checking& c, const Constructing& at, const Type& type,
@@ -210,7 +219,7 @@ void construct_each(Checking& c, const Constructing& at, const Type& array, cons
 void construct(Checking& c, const Constructing& at, const Type& type,
                const std::vector<Argument>* values, const std::function<Expression*()>& part,
                Block& to) {
-    if (!is_called(at.phase, &type)) return;
+    if (!is_called(c, at.phase, &type)) return;
     if (type.kind == Kind::block && at.phase == Phase::behind_init) {
         for (const std::string_view name : methods_behind(*type.routine))
             to.push_back(
@@ -221,10 +230,12 @@ void construct(Checking& c, const Constructing& at, const Type& type,
         return to.push_back(call_constructor(
             c, at.like, part(), values ? *values : std::vector<Argument>{}, *constructor_of(type)));
     if (type.kind == Kind::structure) {
-        for (const Variable* member : type.members)
-            construct(
-                c, at, *member->type, member->constructed,
-                [&] { return make_member(c, part(), member->text); }, to);
+        for (const Variable* member : type.members) {
+            const auto own = [&] { return make_member(c, part(), member->text); };
+            if (at.phase == Phase::members && c.begins_of_members.contains(member))
+                to.push_back(assign_first(c, own(), *c.begins_of_members[member], *member->type));
+            construct(c, at, *member->type, member->constructed, own, to);
+        }
         return;
     }
     if (const Expression* list = at.phase == Phase::init ? each_of(values) : nullptr)
@@ -290,8 +301,8 @@ bool is_first(const Checking& c, const Routine& block) {
 
 }  // namespace
 
-bool is_constructed(const Type* type) {
-    return is_called(Phase::init, type);
+bool is_constructed(const Checking& c, const Type* type) {
+    return is_called(c, Phase::init, type);
 }
 
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
@@ -308,6 +319,11 @@ void construct_one(Checking& c, const Expression& like, Routine& routine, const 
 }
 
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
+    if (c.beginning.member && c.beginning.path.empty() && !is_constant(*value)) {
+        c.begins_of_members[c.beginning.member] = value;
+        value = nothing(c, *value, type);
+        return c.beginning.is_made = true;
+    }
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
     if (type.is_alias()) s->op = Word::reference_assign;
@@ -326,7 +342,7 @@ void begin_in(Checking& c, Variable& variable, Phase phase) {
     const bool is_global = variable.space == Space::global && !c.routine;
     const bool stays =
         c.routine && (c.routine->has_instances() || variable.section == Section::kept);
-    if (!is_called(phase, type) || !(is_own ? stays : is_global)) return;
+    if (!is_called(c, phase, type) || !(is_own ? stays : is_global)) return;
     const Expression like = like_name(variable.name, variable.name.place);
     Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
     construct(
@@ -338,11 +354,24 @@ void begin_in(Checking& c, Variable& variable, Phase phase) {
 
 void begin_instance(Checking& c, Variable& variable) {
     const Type* type = variable.type;
-    if (variable.constructed && !variable.constructed->empty() && !is_constructed(type)) {
+    if (variable.constructed && !variable.constructed->empty() && !is_constructed(c, type)) {
         if (type) refuse_constructor_arguments(c, variable.name.place, *type);
         return;
     }
     begin_in(c, variable, Phase::init);
+}
+
+void begin_members(Checking& c, Variable& variable) {
+    const bool is_given = variable.section == Section::input || variable.section == Section::in_out;
+    if (!is_called(c, Phase::members, variable.type) || variable.constant || is_given) return;
+    const bool is_own = c.routine && variable.space == Space::frame;
+    if (!is_own && (c.routine || variable.space != Space::global)) return;
+    const Expression like = like_name(variable.name, variable.name.place);
+    Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
+    const bool in_each_call = !is_own || is_of_call(of, variable);
+    construct(
+        c, {like, of.variables, of.pou, Phase::members}, *variable.type, nullptr,
+        [&] { return named(c, like, variable); }, in_each_call ? of.call_begins : of.begins);
 }
 
 void follow_init(Checking& c, Variable& variable) {

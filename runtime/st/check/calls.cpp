@@ -113,11 +113,14 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
     const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);
-    const bool fits = same_type(given, *type) || derives ||
-                      (parameter.section == Section::in_out
-                           ? texts && type->is_open
-                           : texts || (type->is_scalar() &&
-                                       (widens(*type, given) || are_same_pattern(*type, given))));
+    const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
+                          type->is_integer() && given.is_integer();  // of a date: any integer
+    const bool fits =
+        same_type(given, *type) || derives ||
+        (parameter.section == Section::in_out
+             ? texts && type->is_open
+             : texts || is_split ||
+                   (type->is_scalar() && (widens(*type, given) || are_same_pattern(*type, given))));
     note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,
@@ -170,7 +173,8 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;
     const bool is_read = is_constant || (parameter.section == Section::in_out &&
                                          (is_own_input(*value) || is_lent(*value)));
-    const bool is_place = is_variable(*value) || (argument.is_output && value->kind == E::bit);
+    const bool is_taken = argument.is_output || is_output;
+    const bool is_place = is_variable(*value) || (is_taken && value->kind == E::bit);
     if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {
         if (!is_place)
@@ -184,7 +188,9 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.
 Argument leave_out(Checking& c, const Expression& call, Variable& parameter) {
-    const Type* type = parameter.type->is_open ? &string_type : parameter.type;
+    const Type* type = !parameter.type->is_open  ? parameter.type
+                       : parameter.type->is_wide ? &wide_string_type
+                                                 : &string_type;
     Variable& own = c.make_variable(*c.routine, {}, {}, type);
     depend(c, own.type, call.place);
     c.routine->lends = true;

@@ -147,10 +147,13 @@ struct Checking {
     /// The variable whose initial value is being checked, and the way to the part at hand.
     struct Beginning {
         Variable* variable = nullptr;
+        const Variable* member = nullptr;  ///< or a member of a declared type
         std::vector<std::pair<std::string_view, std::int64_t>> path = {};  ///< members, or indices
         bool is_constructed = false;  ///< FB_init comes before, so that constants are assigned, too
         bool is_made = false;         ///< something of it is assigned
     } beginning = {};
+    /// What members begin with that is no constant: each variable of their type assigns it.
+    std::unordered_map<const Variable*, Expression*> begins_of_members = {};
     int loops = 0;                     ///< around the statement
     bool is_before_finally = false;    ///< the statement stands in a __TRY that has a __FINALLY
     std::vector<NameSet> labels = {};  ///< of each list of statements around it

@@ -3,6 +3,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
 
@@ -110,7 +111,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     if (!read) return {};
     bool is_told = false;
     const auto find = [&](std::string_view text) -> const Type* {
-        if (const Type* type = find_elementary(text)) return type;
+        if (const Type* type = find_elementary(text)) return in_dialect(type, e->place);
         if (const Type* type = find_codesys_type(text)) return type;
         Token named = e->token;
         named.text = text;
@@ -135,7 +136,9 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     if (is_text || from.is_pointer()) {
         if (!is_text && !coerce(c, value, *target)) return nullptr;
         e = value;
-        return e->type;
+        if (!is_text || from.is_wide == target->is_wide) return e->type;
+        return is_constant(*e) ? become(c, e, *target, {.text = e->constant.text})
+                               : become_converted(c, e, *target);
     }
     if (!is_conversion(from, *target))
         return c.fail(

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -307,16 +308,28 @@ bool is_single(const Type& type) {
     return type.kind == Kind::real && type.bits == 32;
 }
 
+/// What the text is as a CHAR or a WCHAR; empty: it is not one of these.
+static std::optional<Wide> only_character(const std::string& text, const Type& type) {
+    if (type.bits == 16) {
+        const std::u16string units = units_of(text);
+        return units.size() == 1 ? std::optional<Wide>(units[0]) : std::nullopt;
+    }
+    return text.size() == 1 ? std::optional<Wide>(static_cast<unsigned char>(text[0]))
+                            : std::nullopt;
+}
+
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
     if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
-        if (is_constant(*e) && e->constant.text.size() > to.length)
+        const std::string& text = e->constant.text;
+        if (is_constant(*e) && kept_bytes(text, to.room()) < text.size())
             c.warn(code::value_out_of_range, e->place,
-                   fmt::format("the text has {} bytes, and {} keeps {}", e->constant.text.size(),
-                               describe(to), to.length),
+                   fmt::format("the text has {} {}, and {} keeps {}",
+                               to.is_wide ? count_units(text) : text.size(),
+                               to.is_wide ? "characters" : "bytes", describe(to), to.length),
                    "declare the STRING longer");
         return true;
     }
@@ -327,8 +340,9 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (from.is_any()) return coerce_constant(c, e, to);
     if (from.is_object() && to.kind == Kind::handle && from.standard == to.standard)
         return convert(c, e, to);
-    if (to.is_character && is_constant(*e) && e->constant.text.size() == 1)
-        return become(c, e, to, {.integer = static_cast<unsigned char>(e->constant.text[0])});
+    if (to.is_character && is_constant(*e) && from.kind == Kind::text)
+        if (const auto only = only_character(e->constant.text, to))
+            return become(c, e, to, {.integer = *only});
     if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
     const bool are_alike = from.kind == Kind::array && to.kind == Kind::array &&
                            from.count() == to.count() && same_type(*from.element, *to.element);
@@ -339,6 +353,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("{} is out of range for {}", to_string(e->constant.integer),
                                       describe(to)));
+        guard_range(c, e, to);
         return convert(c, e, to);
     }
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&

@@ -253,9 +253,10 @@ bool takes_values(const DeclarationBlock& block, const Type* type) {
     return block.section == Section::in_out && block.constant && is_value && !type->is_handle();
 }
 
-const Type& longer_string(Checking& c) {
-    Type& type = c.make_type(Kind::text, "STRING[255]");
+const Type& longer_string(Checking& c, bool is_wide) {
+    Type& type = c.make_type(Kind::text, is_wide ? "WSTRING[255]" : "STRING[255]");
     type.length = 255;
+    type.is_wide = is_wide;
     return type;
 }
 
@@ -302,9 +303,12 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool is_value = takes_values(block, type);
         const Section section = is_value ? Section::input : block.section;
         const bool constant = block.constant && !is_value;
-        const bool is_unsized = type == &unsized_string(declared->name.place.dialect());
-        if (is_value && is_unsized) type = &longer_string(c);
-        if (section == Section::in_out && is_unsized) type = &open_string_type;
+        const Place place = declared->name.place;
+        const bool is_wide = type == &unsized_wide_string(place) && type->is_wide;
+        const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
+        if (is_value && is_unsized) type = &longer_string(c, is_wide);
+        if (section == Section::in_out && is_unsized)
+            type = is_wide ? &open_wide_string_type : &open_string_type;
         const bool is_another = is_instance_of_own(routine, section, type);
         const bool is_static = section == Section::static_ || is_another;
         Variable* variable =

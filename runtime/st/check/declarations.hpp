@@ -49,11 +49,14 @@ void check_initial(Checking& c, Expression*& value, const Type& type);
 bool begin_with(Checking& c, Expression*& value, const Type& type);
 
 /// It is a block that has an FB_init, or has such in it.
-bool is_constructed(const Type* type);
+bool is_constructed(const Checking& c, const Type* type);
 
 /// Calls FB_init of the instances that the variable is or has in it, with what stands behind its
 /// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
 void begin_instance(Checking& c, Variable& variable);
+/// Assigns what members of its type begin with, `STRUCT p : POINTER TO INT := ADR(x); END_STRUCT`,
+/// before what is declared of the variable itself.
+void begin_members(Checking& c, Variable& variable);
 
 /// Calls what stands behind `{attribute 'call_after_init'}` of these instances.
 void follow_init(Checking& c, Variable& variable);

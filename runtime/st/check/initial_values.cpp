@@ -195,12 +195,16 @@ bool is_nothing(const Expression& value, const Type& type) {
 }  // namespace
 
 void check_initial_values(Checking& c) {
+    const auto is_member = [](const Variable& v) { return v.space == Space::frame && !v.of; };
     const auto check_one = [&](Variable& variable) {
         if (!variable.initial || !variable.type || variable.space == Space::constant) return;
         check_initial(c, variable);
     };
+    for (Variable& variable : c.checked.variables)
+        if (is_member(variable)) check_one(variable);
     for (Variable& variable : c.checked.variables) {
-        check_one(variable);
+        begin_members(c, variable);
+        if (!is_member(variable)) check_one(variable);
         begin_instance(c, variable);
         follow_init(c, variable);
     }
@@ -213,6 +217,7 @@ void check_initial_values(Checking& c) {
             if (variable.initial && variable.section == Section::in_out)
                 c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
+            begin_members(c, variable);
             begin_instance(c, variable);
             check_one(variable);
             follow_init(c, variable);
@@ -229,7 +234,8 @@ void check_initial(Checking& c, Variable& variable) {
         Expression* value = &written;
         const bool begins = variable.space == Space::global || (c.routine && variable.of);
         const Checking::Beginning own{.variable = begins ? &variable : nullptr,
-                                      .is_constructed = begins && is_constructed(variable.type)};
+                                      .member = begins || c.routine ? nullptr : &variable,
+                                      .is_constructed = begins && is_constructed(c, variable.type)};
         Checking::Beginning outer = std::exchange(c.beginning, own);
         check_initial(c, value, *variable.type);
         const bool is_made = std::exchange(c.beginning, std::move(outer)).is_made;

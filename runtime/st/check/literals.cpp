@@ -84,8 +84,9 @@ const Type* check_text(Checking& c, Expression& e) {
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("the text has {} bytes", text->size()),
                       "a text has at most 32767 bytes");
-    e.constant.text = *text;
-    return &string_type;
+    const bool is_wide = e.token.quoted && has_wide_texts(e.place);
+    e.constant.text = is_wide ? text_of_units(units_of(*text)) : *text;
+    return is_wide ? &wide_string_type : &string_type;
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ const Type* check_literal(Checking& c, Expression*& e) {
 const Type* check_typed(Checking& c, Expression*& e) {
     Expression*& value = e->operands[0];
     const Token& name = e->token;
-    const Type* type = find_prefix(name.text);
+    const Type* type = in_dialect(find_prefix(name.text), name.place);
     if (NamedType* named = c.look_up(&Names::types, name)) {
         type = resolve_declared(c, *named);
         if (!type) return nullptr;

@@ -1,5 +1,6 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
@@ -114,6 +115,8 @@ const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) 
     if (e->type && e->op == Word::mod_ && e->type->is_real())
         return c.fail(code::type_does_not_fit, e->token.place, "MOD takes whole numbers",
                       "write a - TRUNC(a / b) * b");
+    if (e->type && (e->op == Word::divided || e->op == Word::mod_))
+        guard_divisor(c, e->operands[1]);
     if (e->type) fold(c, e);
     return e->type;
 }

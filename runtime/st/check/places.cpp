@@ -4,6 +4,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/image.hpp"
+#include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -149,9 +150,13 @@ const Type* check_index(Checking& c, Expression*& node) {
                               fmt::format("the index goes from {} to {}", to_string(lower),
                                           to_string(upper)));
             take_type(c, argument.value, lint_type, {.integer = value});
+        } else if (!of_text) {
+            guard_index(c, argument.value, *type);
         }
         if (of_text)
-            type = e.place.dialect().texts_are_bytes ? &bits_type(8) : &char_type;
+            type = e.place.dialect().texts_are_bytes ? &bits_type(type->is_wide ? 16 : 8)
+                   : type->is_wide                   ? &wide_char_type
+                                                     : &char_type;
         else
             type = type->element;
     }

@@ -48,6 +48,31 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return become(c, e, dint_type, {.integer = count});
 }
 
+/// Of the dimension that a variable says: MUX over those of all.
+const Type* check_chosen_bound(Checking& c, Expression*& e) {
+    const bool is_lower = e->standard->typing == Typing::lower_bound;
+    Expression *array = e->arguments[0].value, *wanted = e->arguments[1].value;
+    if (!wanted->type->is_integer())
+        return c.fail(
+            code::type_does_not_fit, wanted->place,
+            fmt::format("a dimension is a whole number, not {}", describe(*wanted->type)));
+    Expression* first = make_constant(c, *e, lint_type, {.integer = 1});
+    std::vector<Argument> choices{
+        {.value = make_binary(c, e->place, e->place, Word::minus, wanted, first)}};
+    const Type* type = array->type;
+    for (std::size_t i = 0; type->is_open_array() && i < type->dimensions; ++i)
+        choices.push_back({.value = bound_of(c, *array, is_lower, i)});
+    for (; type->kind == Kind::array; type = type->element) {
+        const Constant bound{.integer = is_lower ? type->lower : type->upper};
+        choices.push_back({.value = make_constant(c, *e, lint_type, bound)});
+        if (!type->has_inner) break;
+    }
+    e = make_call(c, *e, make_name(c, *e->operands[0], "MUX"), std::move(choices));
+    if (!check(c, e, &lint_type)) return nullptr;
+    convert(c, e, dint_type);
+    return e->type = &dint_type;
+}
+
 const Type* check_open_bound(Checking& c, Expression*& e) {
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);
@@ -63,12 +88,13 @@ const Type* check_open_bound(Checking& c, Expression*& e) {
     return e->type = &dint_type;
 }
 
-/// Of the dimension, which is a constant too.
 const Type* check_bound(Checking& c, Expression*& e) {
     const Type* array = e->arguments[0].value->type;
-    if (array->is_open_array()) return check_open_bound(c, e);
-    if (array->kind != Kind::array) return refuse(c, *e, "an array", *array);
+    if (array->kind != Kind::array && !array->is_open_array())
+        return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
+    if (!is_constant(*wanted)) return check_chosen_bound(c, e);
+    if (array->is_open_array()) return check_open_bound(c, e);
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
     Wide at = 1;
@@ -266,9 +292,11 @@ const Type* check_bit_number(Checking& c, Expression& call, const Type* expected
 
 const Type* check_texts(Checking& c, Expression& call) {
     const StandardFunction& f = *call.standard;
+    bool is_wide = false;
     for (std::size_t i = 0; i < call.arguments.size(); ++i) {
         Expression*& value = call.arguments[i].value;
         const bool is_text = f.parameter(i).type == Generic::text;
+        is_wide |= is_text && value->type->is_wide;
         if (is_text && value->type->is_character) coerce(c, value, string_type);
         if (!is_text) become_number(c, value);
         const Type& type = *value->type;
@@ -278,7 +306,7 @@ const Type* check_texts(Checking& c, Expression& call) {
                                       is_text ? "a STRING" : "a whole number", describe(type)));
         if (type.is_any() && !coerce(c, value, lint_type)) return nullptr;
     }
-    return f.result == Generic::text ? &string_type : &int_type;
+    return f.result != Generic::text ? &int_type : is_wide ? &wide_string_type : &string_type;
 }
 
 const Type* check_capacity(Checking& c, Expression*& e) {

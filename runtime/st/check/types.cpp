@@ -218,8 +218,10 @@ const Type* resolve_text(Checking& c, const TypeText& text) {
         c.warn(code::value_out_of_range, length->place, "a STRING keeps 32767 characters here",
                "what is longer is cut off");
     const auto kept = static_cast<std::uint32_t>(std::min(*whole, longest_text));
-    Type& type = c.make_type(Kind::text, fmt::format("STRING[{}]", kept));
+    const bool is_wide = same_name(text.name.text, "wstring") && has_wide_texts(text.place);
+    Type& type = c.make_type(Kind::text, fmt::format("{}STRING[{}]", is_wide ? "W" : "", kept));
     type.length = kept;
+    type.is_wide = is_wide;
     return &type;
 }
 
@@ -249,6 +251,11 @@ const Type* resolve(Checking& c, const TypeText& text) {
     return nullptr;
 }
 
+const Type* in_dialect(const Type* type, const Place& place) {
+    if (has_wide_texts(place)) return type;
+    return type == &wide_string_type ? &string_type : type == &wide_char_type ? &char_type : type;
+}
+
 const Type* resolve_parameter(Checking& c, const TypeText& text) {
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
@@ -256,7 +263,9 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted)
-        return type == &string_type ? &unsized_string(name.place.dialect()) : type;
+        return type == &string_type        ? &unsized_string(name.place.dialect())
+               : type == &wide_string_type ? &unsized_wide_string(name.place)
+                                           : in_dialect(type, name.place);
     if (name.place.dialect().is_loose && !name.quoted)
         if (const Type* type = find_codesys_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {

@@ -12,6 +12,8 @@ const Type* resolve(Checking& c, const TypeText& text);
 /// The same of what is given to a call, which alone may be an ARRAY[*].
 const Type* resolve_parameter(Checking& c, const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
+/// WSTRING and WCHAR are STRING and CHAR in SCL; another type, or null, is itself.
+const Type* in_dialect(const Type* type, const Place& place);
 const Type* resolve_declared(Checking& c, NamedType& named);
 
 // catalog_types.cpp

@@ -81,16 +81,31 @@ Scalar bytes_of_scalar(const Shape& shape, std::uint64_t value) {
     return bytes;
 }
 
+std::byte byte_at(const std::u16string& units, std::uint64_t at) {
+    return reinterpret_cast<const std::byte*>(units.data())[at];
+}
+
 std::byte byte_of_text(const Shape& shape, const std::byte* slots, std::uint64_t at) {
+    if (shape.type->is_wide) return byte_at(memory_of_units(slots, shape.type->length), at);
     const std::uint64_t length = slot_value(slots), room = shape.type->length;
     if (shape.is_s7 && at < 2) return static_cast<std::byte>(at == 0 ? room : length);
     if (shape.is_s7) at -= 2;
     return at == length || at >= room ? std::byte{0} : slots[8 + at];
 }
 
+/// Where another text begins at `first`, too: the first 0 ends it.
+void set_units(const Shape& shape, std::byte* slots, std::uint64_t first, std::uint64_t count,
+               const std::byte* from) {
+    std::u16string memory = memory_of_units(slots, shape.type->length);
+    std::memcpy(reinterpret_cast<std::byte*>(memory.data()) + first, from, count);
+    memory.back() = 0;
+    set_memory_of_units(slots, memory);
+}
+
 /// A text ends with its first 0, or with its room; on an S7 where it says.
 void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::uint64_t count,
               const std::byte* from) {
+    if (shape.type->is_wide) return set_units(shape, slots, first, count, from);
     const std::uint64_t length = slot_value(slots), room = shape.type->length;
     if (length < room && !shape.is_s7) slots[8 + length] = std::byte{0};
     for (std::uint64_t at = first; at < first + count; ++at, ++from) {
@@ -346,8 +361,31 @@ Fault store_value(const Code& code, const Bytes& to, std::uint64_t bit, std::uin
     return write_bytes(code, at, shape.format.bytes, bytes.data());
 }
 
+/// Of a WSTRING, whose characters take two bytes each.
+static Fault load_units(const Code& code, const Bytes& from, std::uint64_t room, std::byte* text) {
+    std::u16string units(room + 1, u'\0');
+    for (std::uint64_t at = 0; at < room; ++at) {
+        std::byte two[2];
+        const Fault wrong = read_bytes(code, behind(from, 16 * at), 2, two);
+        if (wrong != Fault::none) return wrong;
+        std::memcpy(&units[at], two, 2);
+        if (units[at] == 0) break;
+    }
+    set_memory_of_units(text, units);
+    return Fault::none;
+}
+
+static Fault store_units(const Code& code, const Bytes& to, std::uint64_t room,
+                         const std::byte* text) {
+    const std::string_view whole(reinterpret_cast<const char*>(text + 8), slot_value(text));
+    const std::u16string units = units_of(whole.substr(0, kept_bytes(whole, of_units | room)));
+    return write_bytes(code, to, 2 * (units.size() + 1),
+                       reinterpret_cast<const std::byte*>(units.c_str()));
+}
+
 Fault load_text(const Code& code, const Bytes& from, std::uint32_t number, std::byte* text) {
     const Shape& shape = code.shapes[number];
+    if (shape.type->is_wide) return load_units(code, from, shape.type->length, text);
     const std::uint64_t room = shape.type->length;
     std::uint64_t length = room;
     Bytes at = from;
@@ -370,6 +408,7 @@ Fault load_text(const Code& code, const Bytes& from, std::uint32_t number, std::
 
 Fault store_text(const Code& code, const Bytes& to, std::uint32_t number, const std::byte* text) {
     const Shape& shape = code.shapes[number];
+    if (shape.type->is_wide) return store_units(code, to, shape.type->length, text);
     const std::uint64_t room = shape.type->length, length = std::min(slot_value(text), room);
     const std::byte end{0},
         header[2] = {static_cast<std::byte>(room), static_cast<std::byte>(length)};

@@ -41,72 +41,6 @@ int base_of(std::string_view number) {
 
 }  // namespace
 
-std::string_view text_at(const std::byte* place) {
-    return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
-}
-
-void copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
-    const std::uint64_t length = std::min(word(from, 0), room);
-    std::memmove(to + 8, from + 8, length);
-    set_word(to, 0, length);
-}
-
-bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count) {
-    const auto length = static_cast<std::int64_t>(word(from, 0));
-    first = std::clamp<std::int64_t>(first, 0, length);
-    count = std::clamp<std::int64_t>(count, 0, length - first);
-    const auto before = static_cast<std::int64_t>(word(to, 0));
-    const auto taken = std::clamp<std::int64_t>(longest_result - before, 0, count);
-    std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(taken));
-    set_word(to, 0, static_cast<std::uint64_t>(before + taken));
-    return taken == count;
-}
-
-std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
-    const auto order = text_at(a) <=> text_at(b);
-    return order < 0 ? -1 : order > 0;
-}
-
-std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
-                                          std::uint32_t room) {
-    if (place < 1 || place > std::int64_t{room}) return {};
-    const auto at = static_cast<std::uint64_t>(place - 1);
-    return at < word(from, 0) ? byte(from + 8, at) : 0;
-}
-
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value) {
-    const auto at = static_cast<std::uint64_t>(place) - 1;
-    const bool is_there = at < word(text, 0);
-    if (is_there) set_byte(text + 8, at, value);
-    if (is_there && value == 0) set_word(text, 0, at);
-    return is_there;
-}
-
-std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
-                                          std::uint64_t room) {
-    const auto at = static_cast<std::uint64_t>(place);
-    if (at > room) return {};
-    return at < word(from, 0) ? byte(from + 8, at) : 0;
-}
-
-bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value,
-                      std::uint64_t room) {
-    const auto at = static_cast<std::uint64_t>(place);
-    if (at > room || (at == room && value != 0)) return false;
-    std::uint64_t length = word(text, 0);
-    const bool is_behind = at >= length;
-    if (is_behind && length < room) set_byte(text + 8, length, 0);
-    if (at < room) set_byte(text + 8, at, value);
-    if (!is_behind && value == 0) length = at;
-    while (is_behind && length < room && byte(text + 8, length) != 0) ++length;
-    set_word(text, 0, length);
-    return true;
-}
-
-std::uint64_t find_text(const std::byte* in, const std::byte* what) {
-    return text_at(what).empty() ? 0 : text_at(in).find(text_at(what)) + 1;
-}
-
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign) {
     if constexpr (std::is_floating_point_v<T>)
@@ -419,7 +353,7 @@ Fault Frames::store_text_through(const std::byte* reference, std::uint64_t bit, 
                                  std::uint64_t slots, std::uint64_t next) {
     Bytes at;
     if (const Fault wrong = find(reference, next, at); wrong != Fault::none) return wrong;
-    if (word(place(slots), 0) > code.shapes[shape].type->length) note_cut(next);
+    if (is_too_long(place(slots), code.shapes[shape].type->room())) note_cut(next);
     at.first += static_cast<std::int64_t>(bit / 8);
     return told(store_text(code, at, shape, place(slots)), reference);
 }

@@ -192,11 +192,15 @@ bool next(std::byte* counter, const std::byte* limit) {
 
 std::string_view text_at(const std::byte* place);
 
-void copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
+/// `room` of a text is bytes, or units (types/wide_text.hpp). False: it was cut.
+bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
+bool is_too_long(const std::byte* text, std::uint64_t room);
+std::uint64_t length_of_text(const std::byte* text, bool in_units);
 
 /// Of `from` those characters from `first` (0) on, to a text that has room for `longest_result`;
 /// false where that cuts them short.
-bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count);
+bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
+                 bool in_units);
 
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
@@ -206,7 +210,7 @@ std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t pl
                                           std::uint32_t room);
 
 /// A 0 ends the text there. False if the text is shorter.
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value);
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint32_t room);
 
 /// The byte at `place` (from 0) of a text that has room for so many and the 0 that ends it; behind
 /// its end it is 0.
@@ -218,7 +222,7 @@ std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t pl
 bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room);
 
 /// The first place, counted from 1, or 0.
-std::uint64_t find_text(const std::byte* in, const std::byte* what);
+std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_units);
 
 /// `has_sign`: '+42'.
 template <class T>

@@ -68,7 +68,7 @@
     OP(load_packed, move, "wrnr", put(a, load_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER(to))))) \
     OP(store_packed, move, "rrnr", store_packed(target(U(b)), c + U(d), PackedFormat::of_number(UPPER(to)), U(a))) \
     OP(load_packed_text, text, "rrnr", load_packed_text(target(U(a)), target(U(b)), c + U(d), PackedText::of_number(UPPER(to)))) \
-    OP(store_packed_text, text, "rrnr", if (word(target(U(a)), 0) > PackedText::of_number(UPPER(to)).length) frames.note_cut(BEHIND); store_packed_text(target(U(b)), c + U(d), PackedText::of_number(UPPER(to)), target(U(a)))) \
+    OP(store_packed_text, text, "rrnr", if (is_too_long(target(U(a)), PackedText::of_number(UPPER(to)).room())) frames.note_cut(BEHIND); store_packed_text(target(U(b)), c + U(d), PackedText::of_number(UPPER(to)), target(U(a)))) \
     OP(initialise, move, "snn-", copy_slots(at(a), IMAGE(b), c))            \
     OP(index, integer, "wrx-", ELEMENT(b, c); put(a, element))                                       \
     OP(index_more, integer, "wrx-", ELEMENT(b, c); put(a, U(a) + element))                           \
@@ -170,15 +170,15 @@
     OP(real_bits, real, "wr--", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
     OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
-    OP(text_copy, text, "rrr-", if (word(target(U(b)), 0) > U(c)) frames.note_cut(BEHIND); copy_text(target(U(a)), target(U(b)), U(c))) \
-    OP(text_append, text, "rrd-", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1))) frames.note_cut(BEHIND)) \
-    OP(text_length, text, "wr--", put(a, word(target(U(b)), 0)))                                     \
+    OP(text_copy, text, "rrr-", if (!copy_text(target(U(a)), target(U(b)), U(c))) frames.note_cut(BEHIND)) \
+    OP(text_append, text, "rrdn", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1), d != 0)) frames.note_cut(BEHIND)) \
+    OP(text_length, text, "wrn-", put(a, length_of_text(target(U(b)), c != 0)))                      \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
     OP(text_byte, text, "wrrr", if (const auto n = byte_of_text(target(U(b)), I(c), U(d))) put(a, *n); else FAIL(array_bounds)) \
     OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
-    OP(set_character, text, "rrr-", if (!set_character(target(U(b)), I(c), U(a))) FAIL(array_bounds)) \
-    OP(text_find, text, "wrr-", put(a, find_text(target(U(b)), target(U(c)))))                       \
+    OP(set_character, text, "rrrn", if (!set_character(target(U(b)), I(c), U(a), d)) FAIL(array_bounds)) \
+    OP(text_find, text, "wrrn", put(a, find_text(target(U(b)), target(U(c)), d != 0)))               \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
     OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), c != 0))                           \

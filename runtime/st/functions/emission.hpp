@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "runtime/st/code/opcodes.hpp"
 #include "runtime/st/types/types.hpp"
 
@@ -25,6 +27,11 @@ struct Emission {
     const Type& type() const { return *call.type; }
     bool is_narrow() const { return type().kind == Type::Kind::real && type().bits == 32; }
     std::size_t count() const { return call.arguments.size(); }
+    /// A text that is given has units of UTF-16.
+    bool is_wide() const {
+        return std::ranges::any_of(call.arguments,
+                                   [](const Argument& a) { return a.value->type->is_wide; });
+    }
     const Expression& given(std::size_t argument) const { return *call.arguments[argument].value; }
 
     /// The instruction's value in a new temporary.
@@ -47,6 +54,8 @@ struct Emission {
     virtual Slot value_or_address(std::size_t argument) = 0;
     /// Those of the arguments from `first` on, one behind the other.
     virtual Slot several(std::size_t first) = 0;
+    /// A slot for the result, where it is wanted.
+    virtual Slot wanted_slot() = 0;
     virtual Slot capacity(std::size_t argument) = 0;  ///< of a text
 
     virtual Slot reference(std::size_t argument) = 0;  ///< the first of its slots

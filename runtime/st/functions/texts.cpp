@@ -42,7 +42,7 @@ Slot emit_right(Emission& e) {
     Parts parts(e);
     const Slot count = e.value(1);
     parts.begin();
-    const Slot length = e.emit(Op::text_length, parts.in);
+    const Slot length = e.emit(Op::text_length, parts.in, e.is_wide());
     parts.append(parts.in, parts.difference(length, count), count);
     return parts.made;
 }
@@ -86,14 +86,16 @@ Slot emit_replace(Emission& e) {
 
 Slot emit_find(Emission& e) {
     const Slot in = e.text(0);
-    return e.result(Op::text_find, in, e.text(1));
+    const Slot what = e.text(1), found = e.wanted_slot();
+    e.put(Op::text_find, found, in, what, e.is_wide());
+    return found;
 }
 
 // clang-format off
 /// Characters are counted from 1. A text that is made has at most 254.
 constexpr StandardFunction texts[] = {
     {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
-     [](Emission& e) { return e.result(Op::text_length, e.text(0)); }},
+     [](Emission& e) { return e.result(Op::text_length, e.text(0), e.is_wide()); }},
     {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
      [](Emission& e) { return e.capacity(0); }},
     {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",

@@ -148,7 +148,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
             return w.emit(Op::time_of_text, wanted, text, static_cast<Slot>(e.type->kind));
         if (e.type->is_character) {
             const Slot to = w.result(wanted);
-            w.put(Op::text_character, to, text, w.constant_slot(1), 1);
+            w.put(Op::text_character, to, text, w.constant_slot(1),
+                  e.type->bits == 16 ? of_units | 1 : 1);
             return to;
         }
         return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,

@@ -98,7 +98,8 @@ void fill_default(Writing& w, Writing::Image& image, std::uint32_t at, const Typ
 void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
           const Expression& value) {
     if (value.kind == Expression::Kind::constant && type.kind == Kind::text) {
-        const std::string text = value.constant.text.substr(0, type.length);
+        const std::string& whole = value.constant.text;
+        const std::string text = whole.substr(0, kept_bytes(whole, type.room()));
         image[at] = text.size();
         std::memcpy(&image[at] + 1, text.data(), text.size());
     } else if (value.kind == Expression::Kind::constant) {

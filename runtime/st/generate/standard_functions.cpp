@@ -60,12 +60,14 @@ struct Call : Emission {
 
     Slot emit(Op op, Slot b, Slot c) override { return w.emit(op, none, b, c); }
     Slot result(Op op, Slot b, Slot c) override { return w.emit(op, wanted, b, c); }
+    Slot wanted_slot() override { return w.result(wanted); }
     Slot value(std::size_t i) override { return value_before(w, given(i), call); }
     Slot text(std::size_t i) override { return text_before(w, given(i), call); }
     Slot value_or_address(std::size_t i) override { return st::value_or_address(w, given(i)); }
     Slot several(std::size_t first) override { return st::several(w, call, first); }
     Slot capacity(std::size_t i) override {
-        return capacity_of(w, locate(w, given(i)), *given(i).type);
+        const Slot room = capacity_of(w, locate(w, given(i)), *given(i).type);
+        return w.emit(Op::and_bits, wanted, room, w.constant_slot(of_units - 1));
     }
     Slot reference(std::size_t i) override { return st::reference(w, given(i)); }
     void put(Op op, Slot a, Slot b, Slot c, Slot d) override { w.put(op, a, b, c, d); }
@@ -79,12 +81,12 @@ struct Call : Emission {
             w.options.overflow_faults && type().kind == Kind::integer && type().bits < 64;
         return faults ? within(w, type(), slot) : result(of_type(Op::wrap_sint, type()), slot, 0);
     }
-    Slot new_text() override { return st::new_text(w).address; }
+    Slot new_text() override { return st::new_text(w, is_wide()).address; }
     void append(Slot to, Slot from, Slot first, Slot count) override {
         const Slot range = w.new_temporary(2);
         w.put(Op::move, range, first);
         w.put(Op::move, range + 1, count);
-        w.put(Op::text_append, to, from, range);
+        w.put(Op::text_append, to, from, range, is_wide());
     }
     void reset_timer(std::size_t i) override { st::reset_timer(w, given(i)); }
 

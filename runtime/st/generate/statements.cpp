@@ -19,7 +19,7 @@ void write_character(Writing& w, const Statement& s) {
     if (s.target->place.dialect().texts_are_bytes)
         w.put(Op::set_text_byte, from, place, index, capacity_of(w, at, *text.type));
     else
-        w.put(Op::set_character, from, place, index);
+        w.put(Op::set_character, from, place, index, text.type->room());
     if (at.packed) store_packed_text(w, at, place);
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "runtime/st/functions/standard.hpp"
+#include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -8,7 +9,8 @@ namespace lineshaft::st {
 
 namespace {
 
-constexpr std::uint32_t result_slots = 1 + (longest_result + 7) / 8;
+constexpr std::uint32_t result_slots = 1 + (longest_result + 7) / 8,
+                        wide_result_slots = 1 + (3 * longest_result + 7) / 8;
 
 Slot constant_text(Writing& w, std::string_view text) {
     const auto first = static_cast<std::uint32_t>(w.constants.size());
@@ -34,13 +36,28 @@ void write_name(Writing& w, const Type& type, Slot number, Slot text) {
     w.land(end);
 }
 
+/// T#0s is 'T#0ms' in CODESYS and TwinCAT.
+void write_no_time(Writing& w, Slot number, Slot text) {
+    Jumps end;
+    w.jump(Op::jump_if, 0, number, end);
+    constexpr std::string_view none_at_all = "T#0ms";
+    w.put(Op::text_copy, text, constant_text(w, none_at_all), w.constant_slot(none_at_all.size()));
+    w.land(end);
+}
+
 Slot text_conversion(Writing& w, const Expression& e) {
     const Expression& from = *e.operands[0];
+    if (from.type->kind == Type::Kind::text) return text_address(w, from);
     Slot number = value(w, from);
     const Slot kept = number;
     if (from.type->kind == Type::Kind::enumeration)
         number = convert(w, number, *from.type, lint_type, false, none);
-    const auto [text, made] = new_text(w);
+    const bool is_unit = from.type->is_character && from.type->bits == 16;
+    const auto [text, made] = new_text(w, is_unit);
+    if (is_unit) {
+        w.put(Op::set_text_byte, number, made, w.constant_slot(0), w.constant_slot(of_units | 1));
+        return made;
+    }
     if (from.type->is_character) {
         w.put(comparison_op(Word::unequal, lint_type), text, number, w.constant_slot(0));
         w.put(Op::move, text + 1, number);
@@ -48,6 +65,9 @@ Slot text_conversion(Writing& w, const Expression& e) {
     }
     if (from.type->is_time()) {
         w.put(Op::text_of_time, made, number, static_cast<Slot>(from.type->kind));
+        if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
+            e.place.dialect().vendor == Vendor::codesys)
+            write_no_time(w, number, made);
         return made;
     }
     const Op op = from.type->kind == Type::Kind::boolean ? Op::text_of_truth
@@ -64,19 +84,21 @@ Slot text_conversion(Writing& w, const Expression& e) {
 
 }  // namespace
 
-NewText new_text(Writing& w) {
-    const Slot text = w.new_temporary(result_slots);
+NewText new_text(Writing& w, bool is_wide) {
+    const Slot text = w.new_temporary(is_wide ? wide_result_slots : result_slots);
     w.put(Op::move, text, w.constant_slot(0));
     return {text, w.emit(Op::set_address, none, text)};
 }
 
 Slot text_before(Writing& w, const Expression& e, const Expression& later) {
+    if (e.kind == E::converted && e.operands[0]->type->kind == Type::Kind::text)
+        return text_before(w, *e.operands[0], later);
     const Slot from = text_address(w, e);
     const bool is_variable = e.kind != E::constant && e.kind != E::call && e.kind != E::converted;
     if (!is_variable || e.type->is_open || !has_call(later)) return from;
-    const Slot text = w.new_temporary(1 + (e.type->length + 7) / 8);
+    const Slot text = w.new_temporary(slots_of(w, *e.type));
     const Slot made = w.emit(Op::set_address, none, text);
-    w.put(Op::text_copy, made, from, w.constant_slot(e.type->length));
+    w.put(Op::text_copy, made, from, w.constant_slot(e.type->room()));
     return made;
 }
 

@@ -159,9 +159,9 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
     const Slot to = w.result(wanted);
     if (e.place.dialect().texts_are_bytes)
         w.put(Op::text_byte, to, address, index,
-              text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->length));
+              text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->room()));
     else
-        w.put(Op::text_character, to, address, index, text.type->length);
+        w.put(Op::text_character, to, address, index, text.type->room());
     return to;
 }
 

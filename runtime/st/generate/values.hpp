@@ -55,7 +55,7 @@ Slot text_before(Writing& w, const Expression& e, const Expression& later);
 struct NewText {
     Slot text, address;
 };
-NewText new_text(Writing& w);
+NewText new_text(Writing& w, bool is_wide = false);
 
 // standard_functions.cpp
 

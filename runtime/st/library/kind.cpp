@@ -124,7 +124,7 @@ void visit(const Type& type, std::size_t slot, const Value& value) {
 }
 
 std::size_t slots_of(const Type& type) {
-    return type.kind == Kind::text ? 1 + (type.length + 7U) / 8 : type.slots;
+    return type.kind == Kind::text ? 1 + (type.text_bytes() + 7U) / 8 : type.slots;
 }
 
 /// What a scan leaves to the next one, and the next call gives anew: temporaries, frames of
@@ -227,7 +227,7 @@ bool is_value(const Type& type, const std::byte* place, const KeptState& machine
         case Kind::interface:
             return is_instance(type, static_cast<std::uint64_t>(number), machine.context);
         case Kind::text:
-            return number >= 0 && number <= std::int64_t{type.length};
+            return number >= 0 && number <= std::int64_t{type.text_bytes()};
         case Kind::reference:
             return is_reference(place, machine);
         case Kind::standard:

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/source/utf8.hpp"
 
 namespace lineshaft::st {
 
@@ -185,6 +186,16 @@ std::optional<Wide> read_moment(std::string_view text) {
     return day && clock ? within_64_bits(*day + *clock) : std::nullopt;
 }
 
+/// `$00E4` of a WSTRING: a unit of UTF-16.
+static std::optional<char32_t> read_unit(std::string_view digits) {
+    char32_t unit = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (i == digits.size() || digit_of(digits[i]) >= 16) return {};
+        unit = unit * 16 + static_cast<char32_t>(digit_of(digits[i]));
+    }
+    return unit;
+}
+
 std::optional<std::string> read_text(std::string_view text, bool is_wide) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -197,6 +208,9 @@ std::optional<std::string> read_text(std::string_view text, bool is_wide) {
         constexpr std::string_view marks = "$'\"lnprtLNPRT", meant = "$'\"\n\n\f\r\t\n\n\f\r\t";
         if (const std::size_t mark = marks.find(text[i]); mark != std::string_view::npos) {
             out += meant[mark];
+        } else if (const auto unit = is_wide ? read_unit(text.substr(i)) : std::nullopt) {
+            add_character(out, *unit);
+            i += 3;
         } else if (i + 1 < text.size() && digit_of(text[i]) < 16 && digit_of(text[i + 1]) < 16) {
             out += static_cast<char>(digit_of(text[i]) * 16 + digit_of(text[i + 1]));
             ++i;

@@ -21,8 +21,8 @@ Type elementary(Kind kind, std::string name, int bits = 64, bool is_signed = fal
     return type;
 }
 
-Type character() {
-    Type type = elementary(Kind::bits, "CHAR", 8);
+Type character(const char* name, int bits) {
+    Type type = elementary(Kind::bits, name, bits);
     type.is_character = true;
     return type;
 }
@@ -33,8 +33,9 @@ Type long_time(Kind kind, const char* name) {
     return type;
 }
 
-Type text_type(std::uint32_t length, bool is_open = false) {
-    Type type = elementary(Kind::text, "STRING");
+Type text_type(std::uint32_t length, bool is_open = false, bool is_wide = false) {
+    Type type = elementary(Kind::text, is_wide ? "WSTRING" : "STRING");
+    type.is_wide = is_wide;
     type.length = length;
     type.slots = 0;
     type.is_open = is_open;
@@ -69,7 +70,7 @@ const Type table[] = {elementary(Kind::boolean, "BOOL", 1),
                       elementary(Kind::moment, "DATE_AND_TIME", 64, true),
                       long_time(Kind::moment, "LDT"),
                       long_time(Kind::moment, "LDATE_AND_TIME"),
-                      character()};
+                      character("CHAR", 8)};
 static_assert(std::size(table) == std::size(elementary_names));
 
 Type null_reference() {
@@ -93,6 +94,9 @@ bool refer_to_the_same(const Type* a, const Type* b) {
 }
 
 const Type open_string = text_type(scl.text_length, true);
+const Type open_wide_string = text_type(scl.text_length, true, true);
+const Type wide_string = text_type(scl.text_length, false, true);
+const Type wide_character = character("WCHAR", 16);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
@@ -106,7 +110,8 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
            &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
            &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
-           &open_string_type = open_string, &char_type = table[28];
+           &open_string_type = open_string, &char_type = table[28], &wide_string_type = wide_string,
+           &open_wide_string_type = open_wide_string, &wide_char_type = wide_character;
 
 const Type* find_codesys_type(std::string_view name) {
     static const Type bit = elementary(Type::Kind::boolean, "BIT", 1);
@@ -145,14 +150,24 @@ const Type* find_prefix(std::string_view name) {
 }
 
 const Type* find_elementary(std::string_view name) {
-    if (same_name(name, "wstring")) return &string_type;
-    if (same_name(name, "wchar")) return &char_type;
+    if (same_name(name, "wstring")) return &wide_string_type;
+    if (same_name(name, "wchar")) return &wide_char_type;
     return find_called(table, name, &Type::name);
 }
 
 const Type& unsized_string(const Dialect& dialect) {
     static const Type shorter = text_type(codesys.text_length);
     return dialect.text_length == shorter.length ? shorter : string_type;
+}
+
+const Type& unsized_wide_string(const Place& place) {
+    static const Type shorter = text_type(codesys.text_length, false, true);
+    if (!has_wide_texts(place)) return unsized_string(place.dialect());
+    return place.dialect().text_length == shorter.length ? shorter : wide_string_type;
+}
+
+bool has_wide_texts(const Place& place) {
+    return !place.dialect().packs_as_s7;
 }
 
 const Type& integer_type(int bits, bool is_signed) {
@@ -204,7 +219,7 @@ bool same_type(const Type& a, const Type& b) {
             return a.bits == b.bits && a.is_signed == b.is_signed && !a.is_subrange &&
                    !b.is_subrange;
         case Kind::text:
-            return a.length == b.length && a.is_open == b.is_open;
+            return a.length == b.length && a.is_open == b.is_open && a.is_wide == b.is_wide;
         case Kind::array:
             return a.lower == b.lower && a.upper == b.upper && same_type(*a.element, *b.element);
         case Kind::reference:

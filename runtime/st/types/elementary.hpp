@@ -13,12 +13,16 @@ inline constexpr Wide longest_text = 32767;
 /// `INT`, `ARRAY[0..3] OF LREAL`: for messages.
 std::string describe(const Type& type);
 
-/// BOOL, SINT, ..., LTIME; null for another name. A WSTRING is a STRING, and a WCHAR a CHAR: texts
-/// are UTF-8, and what counts their characters counts bytes.
+/// BOOL, SINT, ..., LTIME; null for another name. Texts are UTF-8,
+/// and what counts the characters of a STRING counts bytes.
 const Type* find_elementary(std::string_view name);
 
 /// STRING without a length, as the dialect has it.
 const Type& unsized_string(const Dialect& dialect);
+/// WSTRING without a length.
+const Type& unsized_wide_string(const Place& place);
+/// A WSTRING counts units of UTF-16 there, and a WCHAR is one. In SCL they are STRING and CHAR.
+bool has_wide_texts(const Place& place);
 
 /// What stands before '#': also Siemens' B, W, DW, LW and L.
 const Type* find_prefix(std::string_view name);
@@ -32,7 +36,8 @@ const Type* find_codesys_type(std::string_view name);
 
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &date_type, &clock_type, &moment_type, &any_integer_type,
-    &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type;
+    &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type, &wide_string_type,
+    &open_wide_string_type, &wide_char_type;
 
 /// The integer or bit string of that width.
 const Type& integer_type(int bits, bool is_signed);

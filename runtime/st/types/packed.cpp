@@ -61,6 +61,23 @@ std::int64_t quotient_down(std::int64_t value, std::int64_t by) {
     return value / by - (value % by < 0 ? 1 : 0);
 }
 
+void load_units(std::byte* slots, const std::byte* bytes, std::uint64_t longest) {
+    std::u16string units(longest, u'\0');
+    std::memcpy(units.data(), bytes, 2 * longest);
+    const std::string text = text_of_units(std::u16string_view(units).substr(0, units.find(u'\0')));
+    const std::uint64_t length = text.size();
+    std::memcpy(slots, &length, sizeof length);
+    std::memcpy(slots + sizeof length, text.data(), length);
+}
+
+void store_units(std::byte* bytes, const std::byte* slots, std::uint64_t longest) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, slots, sizeof length);
+    std::u16string units = units_of({reinterpret_cast<const char*>(slots + sizeof length), length});
+    units.resize(std::min<std::uint64_t>(units.size(), longest));
+    std::memcpy(bytes, units.c_str(), 2 * (units.size() + 1));
+}
+
 }  // namespace
 
 std::optional<PackedFormat> packed_format(const Type& given, const Dialect& dialect) {
@@ -99,6 +116,7 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         const std::uint64_t bits = type.element ? packed_stride(type, dialect) * type.count() : 0;
         return dialect.packs_as_s7 ? aligned(bits, 16) : bits;
     }
+    if (type.kind == Kind::text && type.is_wide) return 16 * (std::uint64_t{type.length} + 1);
     if (type.kind == Kind::text) return 8 * (type.length + (dialect.packs_as_s7 ? 2 : 1));
     if (type.kind != Kind::structure && type.kind != Kind::union_) return 0;
     std::uint64_t end = 0;
@@ -173,12 +191,14 @@ void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std:
 }
 
 PackedText packed_text(const Type& text, const Dialect& dialect) {
-    return {static_cast<std::uint16_t>(text.length), dialect.packs_as_s7};
+    return {static_cast<std::uint16_t>(text.length), dialect.packs_as_s7 && !text.is_wide,
+            text.is_wide};
 }
 
 void load_packed_text(std::byte* slots, const std::byte* bytes, std::uint64_t bit,
                       PackedText form) {
     const std::byte* first = bytes + bit / 8;
+    if (form.is_wide) return load_units(slots, first, form.length);
     std::uint64_t length = 0;
     if (form.is_s7)
         length = std::min<std::uint64_t>(std::to_integer<std::uint64_t>(first[1]), form.length);
@@ -191,10 +211,11 @@ void load_packed_text(std::byte* slots, const std::byte* bytes, std::uint64_t bi
 
 void store_packed_text(std::byte* bytes, std::uint64_t bit, PackedText form,
                        const std::byte* slots) {
+    std::byte* first = bytes + bit / 8;
+    if (form.is_wide) return store_units(first, slots, form.length);
     std::uint64_t length = 0;
     std::memcpy(&length, slots, sizeof length);
     length = std::min<std::uint64_t>(length, form.length);
-    std::byte* first = bytes + bit / 8;
     if (form.is_s7) {
         first[0] = static_cast<std::byte>(std::min<std::uint64_t>(form.length, 254));
         first[1] = static_cast<std::byte>(std::min<std::uint64_t>(length, 254));

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/st/types/wide_text.hpp"
+
 namespace lineshaft::st {
 
 /// How a scalar is written in packed memory. An instruction has it as a number.
@@ -35,15 +37,18 @@ struct PackedFormat {
 std::uint64_t load_packed(const std::byte* bytes, std::uint64_t bit, PackedFormat format);
 void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std::uint64_t value);
 
-/// A text: its characters and a 0, as in C, or as on an S7 its longest and its own length, a byte
-/// each, and its characters. An instruction has it as a number.
+/// A text: its characters and a 0, as in C, of a WSTRING in 16 bits each, or as on an S7 its
+/// longest and its own length, a byte each, and its characters. An instruction has it as a number.
 struct PackedText {
     std::uint16_t length = 0;  ///< the longest
-    bool is_s7 = false;
+    bool is_s7 = false, is_wide = false;
 
-    constexpr std::uint32_t number() const { return length | std::uint32_t{is_s7} << 31; }
+    constexpr std::uint32_t number() const {
+        return length | std::uint32_t{is_wide} << 30 | std::uint32_t{is_s7} << 31;
+    }
+    constexpr std::uint32_t room() const { return is_wide ? length | of_units : length; }
     static constexpr PackedText of_number(std::uint32_t number) {
-        return {static_cast<std::uint16_t>(number), number >> 31 != 0};
+        return {static_cast<std::uint16_t>(number), number >> 31 != 0, (number >> 30 & 1) != 0};
     }
 };
 

@@ -40,7 +40,7 @@ std::uint64_t alignment_of(const Type& type) {
     std::uint64_t most = 1;
     switch (type.kind) {
         case Type::Kind::text:
-            return 1;
+            return type.is_wide ? 2 : 1;
         case Type::Kind::array:
             return type.element ? alignment_of(*type.element) : 1;
         case Type::Kind::structure:
@@ -72,7 +72,7 @@ std::uint64_t bytes_of(const Type& type) {
         case Type::Kind::moment:
             return type.counts_ns ? 8 : 4;
         case Type::Kind::text:
-            return type.length + 1;
+            return (type.length + 1) * (type.is_wide ? 2 : 1);
         case Type::Kind::enumeration:
             return type.base ? bytes_of(*type.base) : 0;
         case Type::Kind::array:

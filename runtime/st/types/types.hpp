@@ -10,6 +10,7 @@
 #include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/st/syntax/tree.hpp"
+#include "runtime/st/types/wide_text.hpp"
 
 namespace lineshaft::st {
 
@@ -66,6 +67,7 @@ struct Type {
     Referring referring = Referring::ref;  ///< of a reference
     bool has_inner = false;                ///< of an array: its element is its next dimension
     std::uint32_t length = 0;              ///< of a text, in characters
+    bool is_wide = false;        ///< of a text: its characters are those of types/wide_text.hpp
     bool is_open = false;        ///< VAR_IN_OUT STRING: of what length is given; of a reference:
                                  ///< ARRAY[*], to the first element of what is given
     std::size_t dimensions = 1;  ///< of ARRAY[*]
@@ -109,6 +111,9 @@ struct Type {
     bool is_unsigned_64() const {
         return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
     }
+    /// Of a text: what an instruction has as its room, and the bytes that its slots have room for.
+    std::uint32_t room() const { return is_wide ? length | of_units : length; }
+    std::uint32_t text_bytes() const { return is_wide ? 3 * length : length; }
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// Of an array of all its dimensions.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }

@@ -81,6 +81,8 @@ std::string value_text(const Type& type, std::uint64_t slot) {
         case Kind::boolean:
             return slot != 0 ? "TRUE" : "FALSE";
         case Kind::bits:
+            if (type.is_character && type.bits == 16)
+                return text_literal(text_of_units(std::u16string(1, static_cast<char16_t>(slot))));
             if (type.is_character) return text_literal(std::string(1, static_cast<char>(slot)));
             return fmt::format("16#{:X}", slot);
         case Kind::real:

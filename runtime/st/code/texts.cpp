@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <string>
+
+#include "runtime/st/code/code.hpp"
+#include "runtime/st/code/meaning.hpp"
+
+namespace lineshaft::st::meaning {
+
+std::string_view text_at(const std::byte* place) {
+    return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
+}
+
+bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
+    const std::uint64_t whole = word(from, 0), length = kept_bytes(text_at(from), room);
+    std::memmove(to + 8, from + 8, length);
+    set_word(to, 0, length);
+    return length == whole;
+}
+
+/// As `append_text`: first and count are of units.
+static bool append_units(std::byte* to, const std::byte* from, std::int64_t first,
+                         std::int64_t count) {
+    const std::u16string units = units_of(text_at(from));
+    const auto length = static_cast<std::int64_t>(units.size());
+    first = std::clamp<std::int64_t>(first, 0, length);
+    count = std::clamp<std::int64_t>(count, 0, length - first);
+    const auto taken = static_cast<std::size_t>(count);
+    const std::string text =
+        std::string(text_at(to)) +
+        text_of_units(std::u16string_view(units).substr(static_cast<std::size_t>(first), taken));
+    const std::size_t kept = kept_bytes(text, std::uint64_t{of_units} | longest_result);
+    std::memcpy(to + 8, text.data(), kept);
+    set_word(to, 0, kept);
+    return kept == text.size();
+}
+
+bool is_too_long(const std::byte* text, std::uint64_t room) {
+    return kept_bytes(text_at(text), room) < word(text, 0);
+}
+
+std::uint64_t length_of_text(const std::byte* text, bool in_units) {
+    return in_units ? count_units(text_at(text)) : word(text, 0);
+}
+
+bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
+                 bool in_units) {
+    if (in_units) return append_units(to, from, first, count);
+    const auto length = static_cast<std::int64_t>(word(from, 0));
+    first = std::clamp<std::int64_t>(first, 0, length);
+    count = std::clamp<std::int64_t>(count, 0, length - first);
+    const auto before = static_cast<std::int64_t>(word(to, 0));
+    const auto taken = std::clamp<std::int64_t>(longest_result - before, 0, count);
+    std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(taken));
+    set_word(to, 0, static_cast<std::uint64_t>(before + taken));
+    return taken == count;
+}
+
+std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
+    const auto order = text_at(a) <=> text_at(b);
+    return order < 0 ? -1 : order > 0;
+}
+
+std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
+                                          std::uint32_t room) {
+    if (place < 1 || place > std::int64_t{room & ~of_units}) return {};
+    if ((room & of_units) != 0) return byte_of_text(from, place - 1, room);
+    const auto at = static_cast<std::uint64_t>(place - 1);
+    return at < word(from, 0) ? byte(from + 8, at) : 0;
+}
+
+static bool set_unit(std::byte* text, std::uint64_t at, std::uint64_t value, std::uint64_t room) {
+    if (at > room || (at == room && value != 0)) return false;
+    std::u16string memory = memory_of_units(text, room);
+    memory[at] = static_cast<char16_t>(value);
+    set_memory_of_units(text, memory);
+    return true;
+}
+
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint32_t room) {
+    const auto at = static_cast<std::uint64_t>(place) - 1;
+    if ((room & of_units) != 0)
+        return at < count_units(text_at(text)) && set_unit(text, at, value, room & ~of_units);
+    const bool is_there = at < word(text, 0);
+    if (is_there) set_byte(text + 8, at, value);
+    if (is_there && value == 0) set_word(text, 0, at);
+    return is_there;
+}
+
+std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
+                                          std::uint64_t room) {
+    const auto at = static_cast<std::uint64_t>(place);
+    if (at > (room & ~std::uint64_t{of_units})) return {};
+    if ((room & of_units) != 0) {
+        const std::u16string units = units_of(text_at(from));
+        return at < units.size() ? units[at] : 0;
+    }
+    return at < word(from, 0) ? byte(from + 8, at) : 0;
+}
+
+bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value,
+                      std::uint64_t room) {
+    const auto at = static_cast<std::uint64_t>(place);
+    if ((room & of_units) != 0) return set_unit(text, at, value, room & ~std::uint64_t{of_units});
+    if (at > room || (at == room && value != 0)) return false;
+    std::uint64_t length = word(text, 0);
+    const bool is_behind = at >= length;
+    if (is_behind && length < room) set_byte(text + 8, length, 0);
+    if (at < room) set_byte(text + 8, at, value);
+    if (!is_behind && value == 0) length = at;
+    while (is_behind && length < room && byte(text + 8, length) != 0) ++length;
+    set_word(text, 0, length);
+    return true;
+}
+
+std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_units) {
+    const std::size_t at =
+        text_at(what).empty() ? text_at(in).npos : text_at(in).find(text_at(what));
+    if (at == text_at(in).npos) return 0;
+    return (in_units ? count_units(text_at(in).substr(0, at)) : at) + 1;
+}
+
+}  // namespace lineshaft::st::meaning
