@@ -116,7 +116,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     }
     const bool is_other = from.has_numbers && from.name != to.name;
     const bool has_number = is_other || from.kind == Kind::bits;
-    const bool are_numbers = e->place.dialect().enumerations_are_numbers;
+    const bool are_numbers = e->place.dialect().enumerations_are_numbers && !to.is_strict;
     if (has_number && to.has_numbers && are_numbers) {
         Expression* number = e;
         convert(c, number, lint_type);

@@ -95,6 +95,12 @@ const Type* check_comparison(Checking& c, Expression*& e) {
 const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) {
     if (is_dtl(*e->operands[0]->type) || is_dtl(*e->operands[1]->type))
         return check_dtl_arithmetic(c, e);
+    for (const Expression* operand : e->operands)
+        if (operand->type->is_strict && e->place.dialect().is_loose)
+            return c.fail(
+                code::type_does_not_fit, operand->place,
+                fmt::format("'{}' does not go with {}", shown(e->op), describe(*operand->type)),
+                "it has the attribute 'strict': convert it, TO_INT(...)");
     take_numbers(c, *e, true);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(c, e);

@@ -77,6 +77,8 @@ struct Type {
     bool counted = true;                       ///< those are 0, 1, 2, ...
     bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
+    bool is_qualified_only = false;            ///< its values are named as `Type.value` alone
+    bool is_strict = false;                    ///< no number and no other's value becomes one
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool all_others_as_last = false;           ///< of them: beyond is as the last one
     bool is_code = false;  ///< of an enumeration: one that the standards make a WORD, as ErrorID
