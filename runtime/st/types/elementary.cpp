@@ -109,7 +109,11 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &open_string_type = open_string, &char_type = table[28];
 
 const Type* find_codesys_type(std::string_view name) {
-    static const Type bit = elementary(Type::Kind::boolean, "BIT", 1);
+    static const Type bit = [] {
+        Type made = elementary(Type::Kind::boolean, "BIT", 1);
+        made.is_one_bit = true;
+        return made;
+    }();
     if (same_name(name, bit.name)) return &bit;
     return same_name(name, "__xword")   ? &bits_type(64)
            : same_name(name, "__uxint") ? &ulint_type
