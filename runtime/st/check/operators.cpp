@@ -187,8 +187,11 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
                       "write its type: NOT WORD#16#FF");
     e->type = &type->plain();
     if (type->kind == Kind::any_bits) e->type = &any_integer_type;
+    const bool counts_ms =
+        e->place.dialect().times_count_ms && type->kind == Kind::time && !type->counts_ns;
+    if (counts_ms) e->type = &ltime_type;
     if (is_constant(*operand)) fold_unary(c, e);
-    return e->type;
+    return counts_ms ? convert(c, e, time_type) : e->type;
 }
 
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
