@@ -589,6 +589,20 @@ def check_named_programs():
     assert "error[L0909]: 'speed' stands in several lists" in said and "More.TcGVL" in said and "Lists.TcGVL" in said, said
 
 
+def check_qualified_names():
+    """What has the attribute 'qualified_only' takes no name from another list, nor an enumeration's value from a variable."""
+    only = "{attribute 'qualified_only'}\n"
+    twincat("only", "GVL", "GVL", only + "VAR_GLOBAL\n Speed : INT := 7;\nEND_VAR")
+    twincat("only", "GVL", "Others", "VAR_GLOBAL\n Speed : INT := 9;\n Ready : INT := 5;\nEND_VAR")
+    twincat("only", "DUT", "E_State", only + "TYPE E_State : (Init, Ready, Speed := 100); END_TYPE")
+    twincat("only", "DUT", "E_Other", only + "TYPE E_Other : (Ready := 50); END_TYPE")
+    twincat("only", "POU", "FB_Names", "FUNCTION_BLOCK FB_Names\nVAR plain, listed, ready, state : INT; END_VAR",
+            "plain := Speed; listed := GVL.Speed; ready := Ready; state := E_State.Ready + E_Other.Ready;")
+    write("only/names_test.st", "TEST 'names'\nVAR f : FB_Names; END_VAR\nf();\nASSERT_EQ(f.plain, 9);\nASSERT_EQ(f.listed, 7);\n"
+          "ASSERT_EQ(f.ready, 5);\nASSERT_EQ(f.state, 51);\nEND_TEST\n")
+    assert "1 of 1 passed" in run("test", "only")
+
+
 def check_lost_bases():
     """What a base that is not here would have is told by no message but the one of the library."""
     twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
@@ -819,6 +833,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_apax()
     check_solution()
     check_named_programs()
+    check_qualified_names()
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()

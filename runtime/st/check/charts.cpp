@@ -39,6 +39,8 @@ struct ChartWriter {
         return make_name(c, like(at), text);
     }
     Expression* active(const Token& step) { return make_member(c, name(step, step.text), "X"); }
+    Expression* next(const Token& step) { return make_member(c, name(step, step.text), "_X"); }
+    bool is_codesys() const { return pou.place.dialect().vendor == Vendor::codesys; }
     Expression* kept(const Token& at, std::string_view of, std::string_view part) {
         return name(at, part_name(of, part));
     }
@@ -206,6 +208,19 @@ Block joined(Block first, const Block& second) {
     return first;
 }
 
+/// CODESYS' `_x` of each step: whether it is active in the next scan.
+void write_next(ChartWriter& w, const Chart& chart) {
+    const auto order = in_order(chart);
+    for (const bool enters : {false, true})
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            Block changed;
+            for (const Token& step : enters ? order[i]->to : order[i]->from)
+                changed.push_back(w.set(w.next(step), w.truth(step, enters)));
+            const Token& at = order[i]->from.front();
+            w.out.push_back(w.when(w.name(at, fired_name(w, i)), std::move(changed)));
+        }
+}
+
 /// All conditions; given back what they change: what is left, then what is entered.
 Block write_conditions(ChartWriter& w, const Chart& chart) {
     const auto order = in_order(chart);
@@ -235,6 +250,7 @@ Block write_conditions(ChartWriter& w, const Chart& chart) {
         leaving.push_back(w.when(w.name(at, fired_name(w, i)), std::move(left)));
         entering.push_back(w.when(w.name(at, fired_name(w, i)), std::move(entered)));
     }
+    if (w.is_codesys()) write_next(w, chart);
     return joined(std::move(leaving), entering);
 }
 
@@ -279,6 +295,11 @@ Expression* pulse_of(ChartWriter& w, const Use& use) {
     return nullptr;
 }
 
+/// CODESYS' `_action.x`: that it runs, and not once more behind.
+std::string_view flag_of_action(ChartWriter& w, const Token& action) {
+    return w.c.checked.names.emplace_back(fmt::format("_{}", action.text));
+}
+
 /// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
 void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& uses) {
     Expression* reset = w.truth(action, false);
@@ -296,6 +317,9 @@ void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& u
     asked = w.joined(Word::or_, asked, kept("stored"));
     w.out.push_back(w.set(kept("runs"), w.joined(Word::and_, asked, w.negated(kept("reset")))));
     Expression* now = w.joined(Word::or_, kept("runs"), pulse);
+    const Variable* flag = find_in(w.routine.names, flag_of_action(w, action));
+    if (flag && flag->type && flag->type->name == "ACTION")
+        w.out.push_back(w.set(make_member(w.c, w.name(action, flag->text), "X"), now));
     if (!w.routine.methods.contains(action.text))
         return w.out.push_back(w.set(w.name(action, action.text), now));
     now = w.joined(Word::or_, now, kept("ran"));
@@ -310,6 +334,7 @@ Block restarted(ChartWriter& w, const Chart& chart) {
     for (const ChartStep& step : chart.steps) {
         const Token& at = step.name;
         made.push_back(w.set(w.active(at), w.truth(at, step.is_initial)));
+        if (w.is_codesys()) made.push_back(w.set(w.next(at), w.truth(at, step.is_initial)));
         made.push_back(w.run(w.kept(at, at.text, "timer"), w.truth(at, false), nullptr));
         made.push_back(w.set(make_member(w.c, w.name(at, at.text), "T"),
                              make_constant(w.c, w.like(at), time_type, {})));
@@ -379,6 +404,17 @@ Block with_flags(ChartWriter& w, const Chart& chart, ChartScan scan) {
     return {w.when(w.negated(w.name(at, "SFCPause")), std::move(made))};
 }
 
+/// `_action` of each action, where nothing else has that name.
+void declare_flags_of_actions(ChartWriter& w, const Chart& chart) {
+    Type& type = w.c.make_type(Kind::structure, "ACTION");
+    type.members = {&w.c.make_variable({}, "X", &bool_type)};
+    for (const auto& [action, uses] : actions_of(w, chart)) {
+        const std::string_view name = flag_of_action(w, action);
+        if (w.routine.methods.contains(action.text) && !w.routine.names.contains(name))
+            w.declare(action, name, &type);
+    }
+}
+
 /// `seen` has the chart, and `routine`, if it is another, what this keeps.
 void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     if (!seen.pou->chart) return;
@@ -386,6 +422,7 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     ChartWriter w{c, routine, *seen.pou};
     Type& type = c.make_type(Kind::structure, "STEP");
     type.members = {&c.make_variable({}, "X", &bool_type), &c.make_variable({}, "T", &time_type)};
+    if (w.is_codesys()) type.members.push_back(&c.make_variable({}, "_X", &bool_type));
     for (const ChartStep& step : chart.steps) {
         const Token& at = step.name;
         if (const Variable* known = find_in(seen.names, at.text)) {
@@ -399,6 +436,8 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
             Token x = at;
             x.text = "X";
             list->arguments = {{.name = x, .value = w.truth(at, true)}};
+            x.text = "_X";
+            if (w.is_codesys()) list->arguments.push_back({.name = x, .value = w.truth(at, true)});
             variable.initial = list;
         }
         w.declare(at, w.part_name(at.text, "timer"), standard_type(c, "ton"));
@@ -406,6 +445,7 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
     }
     for (std::size_t i = 0; i < chart.transitions.size(); ++i)
         w.declare(chart.transitions[i].from.front(), fired_name(w, i), &bool_type);
+    if (w.is_codesys()) declare_flags_of_actions(w, chart);
     for (const auto& [action, uses] : actions_of(w, chart)) {
         for (const std::string_view part : {"stored", "reset", "runs", "ran"})
             w.declare(action, w.part_name(action.text, part), &bool_type);

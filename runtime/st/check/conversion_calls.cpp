@@ -145,7 +145,9 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
             code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
     const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
-    const bool is_kept = value->place.dialect().reckons_wide && from.is_integer();
+    const Dialect& dialect = value->place.dialect();
+    const bool is_kept = (dialect.reckons_wide && from.is_integer()) ||
+                         (dialect.times_count_ms && from.counts_ns != target->counts_ns);
     if (are_texts ||
         (same_type(from, *target) && from.is_character == target->is_character && !is_kept)) {
         e = make_copy(c, *value);

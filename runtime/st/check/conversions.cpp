@@ -117,7 +117,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     }
     const bool is_other = from.has_numbers && from.name != to.name;
     const bool has_number = is_other || from.kind == Kind::bits;
-    const bool are_numbers = e->place.dialect().enumerations_are_numbers;
+    const bool are_numbers = e->place.dialect().enumerations_are_numbers && !to.is_strict;
     if (has_number && to.has_numbers && are_numbers) {
         Expression* number = e;
         convert(c, number, lint_type);
@@ -259,7 +259,9 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
         return become(c, e, to, {.real = value});
     }
     if (from.is_real() || to.kind == Kind::enumeration) return false;
-    const Wide given = e->constant.integer;
+    const bool is_cut = to.kind == Kind::time && !to.counts_ns && from.counts_ns &&
+                        e->place.dialect().times_count_ms;
+    const Wide given = is_cut ? in_whole_ms(e->constant.integer) : e->constant.integer;
     const Wide value = to.kind == Kind::boolean ? Wide{given != 0} : wrapped(to.plain(), given);
     return become(c, e, to, {.integer = value});
 }
@@ -367,6 +369,11 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
                                            is_same_pattern(from, to) || rounds(c, *e, to));
     if (!fits) return refuse_conversion(c, *e, to);
     return convert(c, e, to);
+}
+
+Wide in_whole_ms(Wide nanoseconds) {
+    constexpr Wide ms = 1'000'000, most = Wide{1} << 32;
+    return (nanoseconds / ms % most + most) % most * ms;
 }
 
 const Type* convert(Checking& c, Expression*& e, const Type& to) {

@@ -18,6 +18,9 @@ void warn_of_loss(Checking& c, const Expression& e, const Type& to);
 /// Gives that type, which is never null.
 const Type* convert(Checking& c, Expression*& e, const Type& to);
 
+/// What is kept of a TIME that is whole ms below 2^32.
+Wide in_whole_ms(Wide nanoseconds);
+
 /// `16#FF` has that of the bit string that is wanted.
 void take_width(Checking& c, Expression*& e, const Type* expected);
 

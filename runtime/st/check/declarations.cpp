@@ -133,7 +133,8 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = name_of_global(c, declared);
-    const Variable* const first = in_another_list(c, block, name);
+    const Variable* const first =
+        block.is_qualified_only ? nullptr : in_another_list(c, block, name);
     if (first) c.in_several_lists.emplace(name.text, std::pair(first->name, declared.name));
     if (first || block.is_qualified_only) name.text = in_list;
     const bool is_other = is_other_by_capitals(c, name);

@@ -61,14 +61,18 @@ const Type* check_time(Checking& c, Expression*& slot) {
         return type;
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
-    const bool has_no_sign = e.place.dialect().is_loose && same_name(prefix.substr(0, 1), "l");
+    const Dialect& dialect = e.place.dialect();
+    const bool is_long = same_name(prefix.substr(0, 1), "l"),
+               has_no_sign = dialect.is_loose && is_long;
     const auto value = read_duration(e.token.text, has_no_sign);
     if (!value)
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a time", e.place.text()),
                       "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
     e.constant.integer = wrapped(lint_type, *value);  // CODESYS reckons its LTIME without a sign
-    return &time_type;
+    if (!dialect.times_count_ms) return &time_type;
+    if (!is_long) e.constant.integer = in_whole_ms(*value);
+    return is_long ? &ltime_type : &time_type;
 }
 
 const Type* check_text(Checking& c, Expression& e) {

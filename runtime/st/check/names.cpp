@@ -182,6 +182,13 @@ bool is_ambiguous(Checking& c, const Token& token, const Variable& variable) {
     return true;
 }
 
+/// A value of an enumeration with the attribute 'qualified_only', where the value is due.
+const Type* refuse_alone(Checking& c, const Expression& e, const Type& enumeration) {
+    return c.fail(code::not_declared, e.place, fmt::format("'{}' is not declared", e.token.text),
+                  fmt::format("write {}.{}, which the attribute 'qualified_only' asks for",
+                              enumeration.name, e.token.text));
+}
+
 }  // namespace
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -191,7 +198,9 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
         if (value && !find_variable(c, token))
-            return become_value(c, e, *expected, value - expected->values.data());
+            return expected->is_qualified_only && e->place.dialect().is_loose
+                       ? refuse_alone(c, *e, *expected)
+                       : become_value(c, e, *expected, value - expected->values.data());
     }
     Variable* variable = is_text ? nullptr : find_variable(c, token);
     if (!variable) variable = declare_program(c, token);

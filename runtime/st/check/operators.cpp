@@ -96,6 +96,12 @@ const Type* check_comparison(Checking& c, Expression*& e) {
 const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) {
     if (is_dtl(*e->operands[0]->type) || is_dtl(*e->operands[1]->type))
         return check_dtl_arithmetic(c, e);
+    for (const Expression* operand : e->operands)
+        if (operand->type->is_strict && e->place.dialect().is_loose)
+            return c.fail(
+                code::type_does_not_fit, operand->place,
+                fmt::format("'{}' does not go with {}", shown(e->op), describe(*operand->type)),
+                "it has the attribute 'strict': convert it, TO_INT(...)");
     take_numbers(c, *e, true);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(c, e);
@@ -184,8 +190,11 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
                       "write its type: NOT WORD#16#FF");
     e->type = &type->plain();
     if (type->kind == Kind::any_bits) e->type = &any_integer_type;
+    const bool counts_ms =
+        e->place.dialect().times_count_ms && type->kind == Kind::time && !type->counts_ns;
+    if (counts_ms) e->type = &ltime_type;
     if (is_constant(*operand)) fold_unary(c, e);
-    return e->type;
+    return counts_ms ? convert(c, e, time_type) : e->type;
 }
 
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {

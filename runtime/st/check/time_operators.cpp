@@ -6,6 +6,14 @@ namespace lineshaft::st {
 
 namespace {
 
+/// What is reckoned of TIMEs and numbers; in CODESYS a TIME is whole ms again, an LTIME in ns.
+const Type* become_time(Checking& c, Expression*& e, bool is_long) {
+    const bool counts_ms = e->place.dialect().times_count_ms;
+    e->type = counts_ms ? &ltime_type : &time_type;
+    fold(c, e);
+    return !e->type || is_long || !counts_ms ? e->type : convert(c, e, time_type);
+}
+
 /// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side.
 const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
@@ -19,8 +27,9 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     if (!distance && !moves && !joins)
         return refuse_operands(
             c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
+    if (distance) return become_time(c, e, a.counts_ns);
     const bool within_day = moves && a.kind == Kind::clock;
-    e->type = distance ? &time_type : joins || within_day ? &moment_type : &a;
+    e->type = joins || within_day ? &moment_type : &a;
     fold(c, e);
     if (!within_day) return e->type;
     constexpr Wide day = 86'400'000'000'000;
@@ -56,9 +65,7 @@ const Type* check_time_arithmetic(Checking& c, Expression*& e) {
         const bool is_long = number->type->is_unsigned_64();
         if (!is_long && !coerce(c, number, to)) return nullptr;
     }
-    e->type = &time_type;
-    fold(c, e);
-    return e->type;
+    return become_time(c, e, left->type->counts_ns || right->type->counts_ns);
 }
 
 const Type* check_dtl_arithmetic(Checking& c, Expression*& e) {

@@ -329,6 +329,8 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         own.name = std::string(name_with_namespace(c, declared.name).text);
         own.is_unnamed = false;
         own.texts_are_names = declared.texts_are_names && own.has_values();
+        own.is_qualified_only = declared.type->is_qualified_only;
+        own.is_strict = declared.type->is_strict;
     }
     if (declared.initial) {
         Type& copy = c.checked.types.emplace_back(*type);
@@ -339,7 +341,8 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         copy.initial_value = value;
     }
     auto& values = c.names_beside(declared.name).values;
-    for (std::size_t i = 0; i < type->values.size() && is_own; ++i) {
+    const bool are_names = is_own && !declared.type->is_qualified_only;
+    for (std::size_t i = 0; i < type->values.size() && are_names; ++i) {
         Token value = declared.name;
         value.text = type->values[i];
         value = name_with_namespace(c, value);

@@ -1,7 +1,5 @@
 #include "runtime/st/code/meaning.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <tuple>
 
 #include "runtime/source/letters.hpp"
@@ -31,60 +29,7 @@ auto parts_of(const std::byte* reference) {
 constexpr std::size_t record_end = 3;
 constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
-/// `16#FF`
-int base_of(std::string_view number) {
-    return number.starts_with("2#")    ? 2
-           : number.starts_with("8#")  ? 8
-           : number.starts_with("16#") ? 16
-                                       : 10;
-}
-
 }  // namespace
-
-template <class T>
-void write_number(std::byte* to, T value, bool has_sign) {
-    if constexpr (std::is_floating_point_v<T>)
-        if (std::isnan(value)) value = std::abs(value);  // a NaN's sign is the processor's
-    char* first = reinterpret_cast<char*>(to + 8);
-    const int sign = has_sign && value >= T{} ? 1 : 0;
-    if (sign == 1) *first = '+';
-    const auto [end, error] = std::to_chars(first + sign, first + longest_result, value);
-    set_word(to, 0, error == std::errc() ? static_cast<std::uint64_t>(end - first) : 0);
-}
-
-template <class T>
-void write_real(std::byte* to, T value, bool has_point) {
-    write_number(to, value, false);
-    const std::string_view text = text_at(to);
-    const std::size_t digits = std::min(text.find_first_not_of("-0123456789"), text.size());
-    const bool is_whole = digits == text.size() || text[digits] == 'e';
-    if (!has_point || !is_whole) return;
-    constexpr std::string_view point = ".0";
-    std::byte* first = to + 8 + digits;
-    std::memmove(first + point.size(), first, text.size() - digits);
-    std::memcpy(first, point.data(), point.size());
-    set_word(to, 0, text.size() + point.size());
-}
-
-template <class T>
-T number_of_text(const std::byte* from) {
-    std::string_view text = text_at(from);
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    const bool is_negative = text.starts_with('-');
-    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
-    if (text.find_first_of(".0123456789") != 0) return T{};
-    T value{};
-    std::from_chars_result read;
-    if constexpr (std::is_integral_v<T>) {
-        const int base = base_of(text);
-        if (base != 10) text.remove_prefix(text.find('#') + 1);
-        read = std::from_chars(text.data(), text.data() + text.size(), value, base);
-    } else {
-        read = std::from_chars(text.data(), text.data() + text.size(), value);
-    }
-    if (read.ec != std::errc()) return T{};
-    return is_negative ? -value : value;
-}
 
 std::uint64_t truth_of_text(const std::byte* from) {
     const auto is_letter = [](char a, char b) { return upper(a) == b; };
@@ -112,13 +57,6 @@ std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
     text.remove_prefix(text.find('#') + 1);  // 0 without one
     return static_cast<std::int64_t>(read_time(text, static_cast<Type::Kind>(kind)).value_or(0));
 }
-
-template void write_number(std::byte*, std::int64_t, bool);
-template void write_number(std::byte*, std::uint64_t, bool);
-template void write_real(std::byte*, double, bool);
-template void write_real(std::byte*, float, bool);
-template std::uint64_t number_of_text(const std::byte*);
-template double number_of_text(const std::byte*);
 
 bool move_reference(std::byte* to, const std::byte* from, std::int64_t by) {
     std::int32_t bytes = 0;

@@ -228,14 +228,16 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_unit
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign = false);
 
-/// `has_point`: '12.0', '1.0e+20'.
+/// `is_rounded`: of 7 or 15 digits with a point, '12.0', and from 10^6 or 10^14 on and below 10^-4
+/// with an exponent, '1.5E20', as CODESYS and TwinCAT write it; else the shortest that reads back
+/// as the same.
 template <class T>
-void write_real(std::byte* to, T value, bool has_point);
+void write_real(std::byte* to, T value, bool is_rounded);
 
 /// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
-/// whole number may be `16#FF`.
+/// whole number may be `16#FF`, and where digits may stand in groups `2#1111_0000`.
 template <class T>
-T number_of_text(const std::byte* from);
+T number_of_text(const std::byte* from, bool has_groups);
 
 std::uint64_t truth_of_text(const std::byte* from);
 

@@ -183,8 +183,8 @@
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
     OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), c != 0))                           \
     OP(text_of_float, text, "rrn-", write_real(target(U(a)), static_cast<float>(R(b)), c != 0))      \
-    OP(integer_of_text, text, "wr--", put(a, number_of_text<std::uint64_t>(target(U(b)))))            \
-    OP(real_of_text, text, "wr--", put(a, number_of_text<double>(target(U(b)))))                     \
+    OP(integer_of_text, text, "wrn-", put(a, number_of_text<std::uint64_t>(target(U(b)), c != 0)))    \
+    OP(real_of_text, text, "wrn-", put(a, number_of_text<double>(target(U(b)), c != 0)))             \
     OP(text_of_truth, text, "rr--", write_truth(target(U(a)), U(b) != 0))                          \
     OP(text_of_time, text, "rrn-", write_time(target(U(a)), c, I(b)))                               \
     OP(truth_of_text, text, "wr--", put(a, truth_of_text(target(U(b)))))                             \

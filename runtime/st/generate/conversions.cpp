@@ -55,12 +55,12 @@ Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 }
 
 /// As a whole number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE
-/// in s, the long ones in ns; in 16 bits a DATE is in days since 1990, as Siemens has it.
-Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
-    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+/// in s, the long ones in ns; in days since 1990 a DATE in 16 bits is, as Siemens has it.
+Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, bool in_days,
+                     Slot wanted) {
+    const Type& time = from.is_time() ? from : to;
     const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
     constexpr std::uint64_t day = 86'400'000'000'000;
-    const bool in_days = time.kind == Kind::date && number.bits == 16;
     const Slot unit = w.constant_slot(in_days          ? day
                                       : time.counts_ns ? 1
                                       : in_seconds     ? 1'000'000'000
@@ -88,16 +88,51 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
         const Slot counted = w.emit(Op::div_lreal, wanted, real, one);
         return to.bits == 32 ? w.emit(Op::narrow, wanted, counted) : counted;
     }
-    return number.bits == 64 ? slot : convert_counted(w, slot, from, to, wanted);
+    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    return number.bits == 64 ? slot : convert_counted(w, slot, from, to, in_days, wanted);
 }
 
-/// Of a TIME, a TOD, a DT or a DATE and 64 bits; the prelude reckons in ns.
+/// Of a TIME, a TOD, a DT or a DATE and 64 bits, of CODESYS also 16, which are no days there; the
+/// prelude reckons in ns.
 bool is_counted(const Expression& e) {
-    if (!e.place.dialect().long_numbers_count_time || e.place.source->is_prelude()) return false;
+    const Dialect& dialect = e.place.dialect();
+    if (!dialect.long_numbers_count_time || e.place.source->is_prelude()) return false;
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
-    return from.is_time() != to.is_time() && !time.counts_ns && number.bits == 64 &&
+    const bool has_width = number.bits == 64 || (number.bits == 16 && dialect.times_count_ms);
+    return from.is_time() != to.is_time() && !time.counts_ns && has_width &&
            (number.is_integer() || number.is_bits());
+}
+
+/// Made of something else in CODESYS, whose TIME and TOD are whole ms, DT whole seconds, and DATE
+/// whole days.
+bool is_whole(const Expression& e) {
+    const Type &from = *e.operands[0]->type, &to = e.type->plain();
+    return e.place.dialect().times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
+           !to.counts_ns && (!from.is_time() || from.counts_ns);
+}
+
+/// A TIME begins again at 2^32 ms.
+Slot in_whole_units(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    const Slot unit = w.constant_slot(to.kind == Kind::date     ? 86'400'000'000'000U
+                                      : to.kind == Kind::moment ? 1'000'000'000U
+                                                                : 1'000'000U);
+    Slot count = w.emit(Op::div_lint, none, slot, unit);
+    if (to.kind == Kind::time)
+        count = w.emit(of_type(Op::wrap_sint, integer_type(32, false)), none, count);
+    return w.emit(Op::mul_lint, wanted, count, unit);
+}
+
+/// A REAL counts what a number does.
+Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    const bool is_real = from.is_real();
+    if (is_real) slot = w.emit(Op::round_lint, none, w.emit(Op::round_away, none, slot));
+    if (is_real || is_counted(e))
+        slot = convert_counted(w, slot, is_real ? lint_type : from, to, false, none);
+    else
+        slot = convert(w, slot, from, to, false, none);
+    return in_whole_units(w, slot, to, wanted);
 }
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
@@ -139,13 +174,16 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         return convert(w, address_number(w, operand), lint_type, *e.type, false, wanted);
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
+        const Slot groups = e.place.dialect().vendor == Vendor::codesys ? 1 : 0;
         if (e.type->kind == Kind::real) {
-            const Slot real = w.emit(Op::real_of_text, none, text);
+            const Slot real = w.emit(Op::real_of_text, none, text, groups);
             return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
         }
         if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
-        if (e.type->is_time())
-            return w.emit(Op::time_of_text, wanted, text, static_cast<Slot>(e.type->kind));
+        if (e.type->is_time()) {
+            const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
+            return is_whole(e) ? in_whole_units(w, time, *e.type, wanted) : time;
+        }
         if (e.type->is_character) {
             const Slot to = w.result(wanted);
             w.put(Op::text_character, to, text, w.constant_slot(1),
@@ -153,14 +191,15 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
             return to;
         }
         return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
-                      w.emit(Op::integer_of_text, none, text));
+                      w.emit(Op::integer_of_text, none, text, groups));
     }
     if (e.conversion.is_bcd) return convert_bcd(w, e, wanted);
     if (!e.conversion.is_written && is_wide(w, operand) &&
         (e.type->is_number() || e.type->is_bits()))
         return convert_wide(w, wide_value(w, operand), *e.type, wanted);
+    if (is_whole(e)) return whole_time(w, e, value(w, operand), wanted);
     if (is_counted(e))
-        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(),
+        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(), false,
                                wanted);
     Slot from = value(w, operand);
     if (e.conversion.rounds_away) from = w.emit(Op::round_away, none, from);

@@ -162,12 +162,12 @@ void add_members(Writing& w, Shape& made) {
     const Dialect& dialect = made.is_s7 ? scl : iec;
     const bool is_packed = packed_bits(*made.type, dialect) > 0;
     std::vector<ShapeMember> members;
-    std::uint64_t bit = 0;
+    std::uint64_t end = 0;
     for (const Variable* member : made.type->members) {
-        bit = is_packed ? packed_offset(*made.type, *member, dialect)
-                        : 8 * aligned_behind(bit / 8, *member->type, *made.type);
-        members.push_back({bit, member->slot, shape_number(w, *member->type, made.is_s7)});
-        bit += 8 * bytes_of(*member->type);
+        const std::uint64_t begin = is_packed ? packed_offset(*made.type, *member, dialect)
+                                              : begin_behind(end, *member->type, *made.type);
+        members.push_back({begin, member->slot, shape_number(w, *member->type, made.is_s7)});
+        end = end_behind(end, *member->type, *made.type);
     }
     made.first = static_cast<std::uint32_t>(w.code.members.size());
     made.count = static_cast<std::uint32_t>(members.size());

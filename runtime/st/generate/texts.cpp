@@ -75,9 +75,9 @@ Slot text_conversion(Writing& w, const Expression& e) {
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
-    const bool has_mark =
-        from.type->is_real() ? e.place.dialect().whole_reals_have_points : e.conversion.has_sign;
-    w.put(op, made, number, has_mark ? 1 : 0);
+    const bool is_marked =
+        from.type->is_real() ? e.place.dialect().reals_are_rounded : e.conversion.has_sign;
+    w.put(op, made, number, is_marked ? 1 : 0);
     if (from.type->texts_are_names) write_name(w, *from.type, kept, made);
     return made;
 }

@@ -104,7 +104,7 @@ NameSet declared_names(const Tree& tree) {
     for (const Pou* unit : tree.units) names.insert(unit->name.text);
     for (const auto& [name, is_name] : tree.lost) names.insert(name);
     for (const TypeText& type : tree.type_texts)
-        if (type.kind == TypeText::Kind::enumeration)
+        if (type.kind == TypeText::Kind::enumeration && !type.is_qualified_only)
             for (const Argument& value : type.values) names.insert(value.name.text);
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)

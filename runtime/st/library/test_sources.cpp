@@ -106,7 +106,7 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
             for (const Token& name : names) entry.used.insert(lower(name.text));
     for (const TypeText& type : tree.type_texts) {
         if (!type.name.text.empty()) entry.used.insert(lower(type.name.text));
-        if (type.kind != TypeText::Kind::enumeration) continue;
+        if (type.kind != TypeText::Kind::enumeration || type.is_qualified_only) continue;
         for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
     }
     for (const Declaration& variable : tree.declarations)

@@ -27,27 +27,37 @@ struct PragmaWords {
             word.empty() ? word : rest.substr(static_cast<std::size_t>(word.end() - rest.begin()));
         return word;
     }
+    /// What stands between quotes; empty where none follows.
+    std::string_view take_value() {
+        if (!accept("'")) return {};
+        const std::string_view text = rest.substr(0, rest.find('\''));
+        rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+        return text;
+    }
     bool accept(std::string_view word) { return same_name(next(), word) && !take().empty(); }
 };
 
-bool any_holds(PragmaWords& words, const NameSet& defined);
+bool any_holds(PragmaWords& words, const Definitions& defined);
 
-bool one_holds(PragmaWords& words, const NameSet& defined) {
+bool one_holds(PragmaWords& words, const Definitions& defined) {
     if (words.accept("not")) return !one_holds(words, defined);
     if (words.accept("(")) {
         const bool inner = any_holds(words, defined);
         words.accept(")");
         return inner;
     }
-    const bool asks_definition = same_name(words.take(), "defined");
+    const std::string_view asked = words.take();
     if (!words.accept("(")) return false;
-    const std::string_view name = words.take();
+    const auto known = defined.find(words.take());
+    const bool asks_value = same_name(asked, "hasvalue") && words.accept(",");
+    const std::string_view value = asks_value ? words.take_value() : std::string_view();
     const bool is_plain = words.next() == ")";
     while (!words.next().empty() && words.take() != ")") continue;
-    return asks_definition && is_plain && defined.contains(name);
+    if (!is_plain || known == defined.end()) return false;
+    return asks_value ? known->second == value : same_name(asked, "defined");
 }
 
-bool any_holds(PragmaWords& words, const NameSet& defined) {
+bool any_holds(PragmaWords& words, const Definitions& defined) {
     bool any = false;
     do {
         bool all = one_holds(words, defined);
@@ -63,16 +73,16 @@ bool says_pragma(std::string_view pragma, std::string_view word) {
     return same_name(PragmaWords{pragma}.next(), word);
 }
 
-bool holds(std::string_view pragma, const NameSet& defined) {
+bool holds(std::string_view pragma, const Definitions& defined) {
     PragmaWords words{pragma};
     words.take();
     return any_holds(words, defined);
 }
 
-void note_definition(std::string_view pragma, NameSet& defined) {
+void note_definition(std::string_view pragma, Definitions& defined) {
     PragmaWords words{pragma};
     const std::string_view what = words.take(), name = words.take();
-    if (same_name(what, "define")) defined.insert(name);
+    if (same_name(what, "define")) defined.insert_or_assign(name, words.take_value());
     if (same_name(what, "undefine")) defined.erase(name);
 }
 

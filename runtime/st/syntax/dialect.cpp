@@ -42,14 +42,15 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .vendor = Vendor::codesys,
                          .texts_have_any_length = true,
                          .addresses_count_sizes = true,
-                         .whole_reals_have_points = true,
+                         .reals_are_rounded = true,
                          .most_aligned = 8,
                          .text_length = 80,
                          .long_numbers_count_time = true,
                          .reckons_wide = true,
                          .loops_look_again = true,
                          .rounds_away = true,
-                         .enumerations_begin_at_zero = true};
+                         .enumerations_begin_at_zero = true,
+                         .times_count_ms = true};
 
 const Dialect twincat = [] {
     Dialect made = codesys;
@@ -61,7 +62,8 @@ const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::none;
     made.addresses_of_sizes_are_apart = true;
-    made.whole_reals_have_points = made.enumerations_begin_at_zero = made.rounds_away = false;
+    made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
+    made.times_count_ms = false;
     made.most_aligned = iec.most_aligned;
     made.text_length = iec.text_length;
     return made;

@@ -39,7 +39,7 @@ struct Dialect {
     bool texts_have_any_length = false;         ///< STRING[0], and a reference to it is one to any
     bool addresses_count_sizes = false;         ///< `%MW1` is the second word, else at byte 1
     bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC
-    bool whole_reals_have_points = false;       ///< REAL_TO_STRING(12.0) is '12.0', else '12'
+    bool reals_are_rounded = false;             ///< REAL_TO_STRING(12.0) is '12.0', else '12'
     std::uint8_t most_aligned = 1;              ///< bytes that a member of a structure begins at
     std::uint32_t text_length = 254;            ///< characters of a STRING without a length
     bool long_numbers_count_time = false;       ///< TIME_TO_LINT(T#1s) is 1000, else in ns
@@ -49,7 +49,8 @@ struct Dialect {
     bool rounds_away = false;       ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
-    bool texts_are_windows_1252 = false;      ///< a letter of 'Größe' is a byte, else UTF-8
+    bool times_count_ms = false;          ///< a TIME is whole ms below 2^32, also what is reckoned
+    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the

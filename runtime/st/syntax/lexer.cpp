@@ -502,7 +502,7 @@ class Lexer {
     bool new_line_ = true;
     bool has_foreign_code_ = false;  ///< which was told
     std::vector<Place> choices_;     ///< each `{IF}` that is open
-    NameSet defined_;                ///< by `{define}`
+    Definitions defined_;            ///< by `{define}`
 };
 
 }  // namespace

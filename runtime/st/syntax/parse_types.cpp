@@ -145,6 +145,8 @@ void parse_reference(Parsing& p, TypeText& type) {
 ///             ( ':' Data_Type | Struct_Decl | Union_Decl ) ( ':=' Init ) ?
 void parse_type_declarations(Parsing& p) {
     bool texts_are_names = has_attribute(p, p.at, "to_string");
+    bool is_qualified_only = has_attribute(p, p.at, "qualified_only"),
+         is_strict = has_attribute(p, p.at, "strict");
     std::string_view pack_mode = attribute_value(p, p.at, "pack_mode");
     const Token opener = p.take();
     const auto is_abstract = [&] { return p.is_name(1) || p.next().word == Word::end_type_; };
@@ -153,6 +155,8 @@ void parse_type_declarations(Parsing& p) {
         TypeDeclaration declared;
         declared.texts_are_names = has_attribute(p, p.at, "to_string") || texts_are_names;
         texts_are_names = false;
+        is_qualified_only |= has_attribute(p, p.at, "qualified_only");
+        is_strict |= has_attribute(p, p.at, "strict");
         if (pack_mode.empty()) pack_mode = attribute_value(p, p.at, "pack_mode");
         declared.name = expect_name(p, "the name of a type");
         Token base;
@@ -161,6 +165,8 @@ void parse_type_declarations(Parsing& p) {
         if (!p.is(Word::struct_) && !p.is(Word::union_)) expect(p, Word::colon, "after the name");
         declared.type = parse_type(p);
         declared.type->base = base;
+        declared.type->is_qualified_only = std::exchange(is_qualified_only, false);
+        declared.type->is_strict = std::exchange(is_strict, false);
         declared.type->pack_mode = std::exchange(pack_mode, {});
         if (p.accept(Word::assign)) declared.initial = parse_initial(p);
         if (!p.accept(Word::semicolon) && !p.is(Word::end_type_)) end_statement(p);

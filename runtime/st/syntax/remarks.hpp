@@ -32,11 +32,14 @@ std::string_view comment_before(const Tokens& tokens, std::size_t token, bool fi
 /// `{IF defined (x)}` begins with `IF`, whatever its letters.
 bool says_pragma(std::string_view pragma, std::string_view word);
 
-/// The condition of `{IF ...}` or `{ELSIF ...}`: `defined (x)`, NOT, AND, OR, parentheses. What
-/// else can be asked there, of a project or a device, does not hold.
-bool holds(std::string_view pragma, const NameSet& defined);
+/// Names that `{define}` has made known, with the value that it gives them.
+using Definitions = NameMap<std::string_view>;
 
-/// `{define x}` and `{undefine x}`.
-void note_definition(std::string_view pragma, NameSet& defined);
+/// The condition of `{IF ...}` or `{ELSIF ...}`: `defined (x)`, `hasvalue (x, '1')`, NOT, AND, OR,
+/// parentheses. What else can be asked there, of a project or a device, does not hold.
+bool holds(std::string_view pragma, const Definitions& defined);
+
+/// `{define x}`, `{define x '1'}` and `{undefine x}`.
+void note_definition(std::string_view pragma, Definitions& defined);
 
 }  // namespace lineshaft::st

@@ -208,6 +208,8 @@ struct TypeText {
     std::string_view pack_mode = {};  ///< of a structure: `{attribute 'pack_mode' := '1'}`
     std::vector<struct Declaration*> members = {};
     std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given
+    bool is_qualified_only = false;     ///< its values are named as `Type.value` alone
+    bool is_strict = false;             ///< `{attribute 'strict'}`: it takes its own values alone
 };
 
 /// `a, b : INT := 5;` has one for each name.

@@ -107,14 +107,19 @@ const Type null_type = null_reference();
 
 const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &lint_type = table[4], &ulint_type = table[8], &real_type = table[13],
-           &lreal_type = table[14], &time_type = table[15], &date_type = table[18],
-           &clock_type = table[20], &moment_type = table[24], &any_integer_type = any_integer,
-           &any_real_type = any_real, &any_bits_type = any_bits, &string_type = table[17],
-           &open_string_type = open_string, &char_type = table[28], &wide_string_type = wide_string,
-           &open_wide_string_type = open_wide_string, &wide_char_type = wide_character;
+           &lreal_type = table[14], &time_type = table[15], &ltime_type = table[16],
+           &date_type = table[18], &clock_type = table[20], &moment_type = table[24],
+           &any_integer_type = any_integer, &any_real_type = any_real, &any_bits_type = any_bits,
+           &string_type = table[17], &open_string_type = open_string, &char_type = table[28],
+           &wide_string_type = wide_string, &open_wide_string_type = open_wide_string,
+           &wide_char_type = wide_character;
 
 const Type* find_codesys_type(std::string_view name) {
-    static const Type bit = elementary(Type::Kind::boolean, "BIT", 1);
+    static const Type bit = [] {
+        Type made = elementary(Type::Kind::boolean, "BIT", 1);
+        made.is_one_bit = true;
+        return made;
+    }();
     if (same_name(name, bit.name)) return &bit;
     return same_name(name, "__xword")   ? &bits_type(64)
            : same_name(name, "__uxint") ? &ulint_type

@@ -30,12 +30,12 @@ const Type* find_prefix(std::string_view name);
 /// NULL, before it is known where it goes.
 extern const Type null_type;
 
-/// What CODESYS has beside the standard's: BIT, a BOOL, of which several in a structure take a byte
-/// each here; __XWORD, __UXINT and __XINT, as wide as a pointer. Null for another name.
+/// What CODESYS has beside the standard's: BIT, a BOOL, of which eight in a structure share a byte;
+/// __XWORD, __UXINT and __XINT, as wide as a pointer. Null for another name.
 const Type* find_codesys_type(std::string_view name);
 
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
-    &lreal_type, &time_type, &date_type, &clock_type, &moment_type, &any_integer_type,
+    &lreal_type, &time_type, &ltime_type, &date_type, &clock_type, &moment_type, &any_integer_type,
     &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type, &wide_string_type,
     &open_wide_string_type, &wide_char_type;
 

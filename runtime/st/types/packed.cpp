@@ -31,7 +31,7 @@ std::uint64_t begin_on_s7(const Type& type, std::uint64_t at, const Dialect& dia
 std::uint64_t begin_of(const Type& member, const Type& structure, std::uint64_t at,
                        const Dialect& dialect) {
     return dialect.packs_as_s7 ? begin_on_s7(member, at, dialect)
-                               : 8 * aligned_behind((at + 7) / 8, member, structure);
+                               : begin_behind(at, member, structure);
 }
 
 std::optional<PackedFormat> of_time(const Type& type, const Dialect& dialect) {
@@ -86,7 +86,8 @@ std::optional<PackedFormat> packed_format(const Type& given, const Dialect& dial
     const bool is_big = dialect.packs_as_s7;
     switch (type.kind) {
         case Kind::boolean:
-            return PackedFormat{is_big ? Coding::bit : Coding::truth, 1, is_big, 0};
+            return PackedFormat{is_big || type.is_one_bit ? Coding::bit : Coding::truth, 1, is_big,
+                                0};
         case Kind::integer:
         case Kind::bits:
             return PackedFormat{type.is_signed ? Coding::with_sign : Coding::whole, bytes, is_big,
@@ -107,7 +108,7 @@ std::optional<PackedFormat> packed_format(const Type& given, const Dialect& dial
 }
 
 std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
-    if (type.kind == Kind::boolean && dialect.packs_as_s7) return 1;
+    if (type.kind == Kind::boolean && (dialect.packs_as_s7 || type.is_one_bit)) return 1;
     if (type.is_scalar()) {
         const auto format = packed_format(type, dialect);
         return format ? 8U * format->bytes : 0;
@@ -131,7 +132,7 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
 
 std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
     const std::uint64_t bits = packed_bits(*array.element, dialect);
-    return dialect.packs_as_s7 ? begin_on_s7(*array.element, bits, dialect) : bits;
+    return dialect.packs_as_s7 ? begin_on_s7(*array.element, bits, dialect) : aligned(bits, 8);
 }
 
 std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {

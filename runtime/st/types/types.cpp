@@ -23,15 +23,19 @@ std::uint64_t rounded_up(std::uint64_t bytes, std::uint64_t to) {
     return (bytes + to - 1) / to * to;
 }
 
+std::uint64_t whole_bytes(std::uint64_t bits) {
+    return (bits + 7) / 8;
+}
+
 /// A block of CODESYS begins with where its methods are.
 std::uint64_t bytes_of_block(const Type& type) {
     const Routine& block = *type.routine;
     const bool has_methods = block.pou->name.place.dialect().vendor == Vendor::codesys;
-    std::uint64_t bytes = block.base ? bytes_of(*block.base->type) : has_methods ? 8 : 0;
+    std::uint64_t bits = 8 * (block.base ? bytes_of(*block.base->type) : has_methods ? 8U : 0U);
     for (const Variable& variable : block.variables)
         if (variable.type && variable.space == Space::frame)
-            bytes = aligned_behind(bytes, *variable.type, type) + bytes_of(*variable.type);
-    return rounded_up(std::max<std::uint64_t>(bytes, 1), alignment_of(type));
+            bits = end_behind(bits, *variable.type, type);
+    return rounded_up(std::max<std::uint64_t>(whole_bytes(bits), 1), alignment_of(type));
 }
 
 }  // namespace
@@ -57,12 +61,18 @@ std::uint64_t alignment_of(const Type& type) {
     }
 }
 
-std::uint64_t aligned_behind(std::uint64_t bytes, const Type& member, const Type& whole) {
-    return rounded_up(bytes, std::min<std::uint64_t>(alignment_of(member), whole.pack));
+std::uint64_t begin_behind(std::uint64_t bits, const Type& member, const Type& whole) {
+    if (member.is_one_bit) return bits;
+    return 8 *
+           rounded_up(whole_bytes(bits), std::min<std::uint64_t>(alignment_of(member), whole.pack));
+}
+
+std::uint64_t end_behind(std::uint64_t bits, const Type& member, const Type& whole) {
+    return begin_behind(bits, member, whole) + (member.is_one_bit ? 1 : 8 * bytes_of(member));
 }
 
 std::uint64_t bytes_of(const Type& type) {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = 0, bits = 0;
     switch (type.kind) {
         case Type::Kind::boolean:
             return 1;
@@ -80,8 +90,8 @@ std::uint64_t bytes_of(const Type& type) {
         case Type::Kind::structure:
             for (const Variable* member : type.members)
                 if (member->type)  // told, if it has none
-                    bytes = aligned_behind(bytes, *member->type, type) + bytes_of(*member->type);
-            return rounded_up(bytes, alignment_of(type));
+                    bits = end_behind(bits, *member->type, type);
+            return rounded_up(whole_bytes(bits), alignment_of(type));
         case Type::Kind::union_:
             for (const Variable* member : type.members)
                 if (member->type) bytes = std::max(bytes, bytes_of(*member->type));

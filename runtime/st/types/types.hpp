@@ -53,6 +53,7 @@ struct Type {
     Kind kind = Kind::integer;
     bool is_signed = false;
     bool is_character = false;  ///< of bits: CHAR
+    bool is_one_bit = false;    ///< of boolean: BIT, which has a byte together with its neighbours
     int bits = 64;              ///< of integer, bits, real
     std::string name = {};      ///< as messages show it
     std::uint32_t slots = 1;
@@ -78,6 +79,8 @@ struct Type {
     std::vector<std::int64_t> numbers = {};    ///< of its values
     bool counted = true;                       ///< those are 0, 1, 2, ...
     bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number
+    bool is_qualified_only = false;            ///< its values are named as `Type.value` alone
+    bool is_strict = false;                    ///< no number and no other's value becomes one
     bool has_numbers = false;                  ///< a source declares it: its numbers are known
     std::vector<std::int64_t> of_number = {};  ///< what SCL's numbers mean; -1, or beyond: nothing
     bool all_others_as_last = false;           ///< of them: beyond is as the last one
@@ -142,8 +145,10 @@ std::uint64_t bytes_of(const Type& type);
 /// Bytes of which its place there is a multiple.
 std::uint64_t alignment_of(const Type& type);
 
-/// Where a member of the structure or block begins that is behind so many bytes.
-std::uint64_t aligned_behind(std::uint64_t bytes, const Type& member, const Type& whole);
+/// Where a member of the structure or block begins that is behind so many bits, and the end of it
+/// [bits]. What is no BIT begins at a byte.
+std::uint64_t begin_behind(std::uint64_t bits, const Type& member, const Type& whole);
+std::uint64_t end_behind(std::uint64_t bits, const Type& member, const Type& whole);
 
 /// A block or a structure with a base that was told, or is lost: what it has besides is not known.
 bool lacks_base(const Type& type);

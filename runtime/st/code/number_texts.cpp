@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "runtime/st/code/code.hpp"
+#include "runtime/st/code/meaning.hpp"
+
+namespace lineshaft::st::meaning {
+
+template <class T>
+void write_number(std::byte* to, T value, bool has_sign) {
+    if constexpr (std::is_floating_point_v<T>)
+        if (std::isnan(value)) value = std::abs(value);  // a NaN's sign is the processor's
+    char* first = reinterpret_cast<char*>(to + 8);
+    const int sign = has_sign && value >= T{} ? 1 : 0;
+    if (sign == 1) *first = '+';
+    const auto [end, error] = std::to_chars(first + sign, first + longest_result, value);
+    set_word(to, 0, error == std::errc() ? static_cast<std::uint64_t>(end - first) : 0);
+}
+
+namespace {
+
+/// The longest that are written without an exponent.
+template <class T>
+constexpr int longest_plain = std::is_same_v<T, float> ? 6 : 14;
+
+/// Digits of a number.
+template <class T>
+constexpr int shown_digits = std::is_same_v<T, float> ? 7 : 15;
+
+/// Between the digits stands the point, behind `before` of them.
+char* write_with_point(char* out, std::string_view digits, int before) {
+    const auto put = [&](std::string_view part) { out = std::ranges::copy(part, out).out; };
+    const auto put_zeros = [&](int count) { out = std::fill_n(out, std::max(count, 0), '0'); };
+    if (before <= 0) put("0.");
+    put_zeros(-before);
+    const auto whole = static_cast<std::size_t>(std::max(before, 0));
+    put(digits.substr(0, before <= 0 ? digits.size() : whole));
+    if (before <= 0) return out;
+    put_zeros(before - static_cast<int>(digits.size()));
+    put(".");
+    put(digits.size() > whole ? digits.substr(whole) : "0");
+    return out;
+}
+
+template <class T>
+void write_rounded(std::byte* to, T value) {
+    std::array<char, 32> room{};
+    const char* end = std::to_chars(room.data(), room.data() + room.size(), std::abs(value),
+                                    std::chars_format::scientific, shown_digits<T> - 1)
+                          .ptr;
+    const char* letter = std::find(std::as_const(room).data(), end, 'e');
+    int exponent = 0;
+    std::from_chars(letter + (letter[1] == '+' ? 2 : 1), end, exponent);
+    room[1] = room[0];
+    std::string_view digits(room.data() + 1, static_cast<std::size_t>(letter - room.data()) - 1);
+    digits = digits.substr(0, std::max<std::size_t>(digits.find_last_not_of('0') + 1, 1));
+    const bool is_plain = exponent >= -4 && exponent < longest_plain<T>;
+    char* const first = reinterpret_cast<char*>(to + 8);
+    char* out = first;
+    if (std::signbit(value)) *out++ = '-';
+    out = write_with_point(out, digits, is_plain ? exponent + 1 : 1);
+    if (!is_plain) {
+        *out++ = 'E';
+        out = std::to_chars(out, out + room.size(), exponent).ptr;
+    }
+    set_word(to, 0, static_cast<std::uint64_t>(out - first));
+}
+
+}  // namespace
+
+template <class T>
+void write_real(std::byte* to, T value, bool is_rounded) {
+    is_rounded&& std::isfinite(value) ? write_rounded(to, value) : write_number(to, value, false);
+}
+
+namespace {
+
+/// `16#FF`
+int base_of(std::string_view number) {
+    return number.starts_with("2#")    ? 2
+           : number.starts_with("8#")  ? 8
+           : number.starts_with("16#") ? 16
+                                       : 10;
+}
+
+/// `2#1111_0000` without the signs between its digits.
+std::string_view without_groups(std::string_view text, std::array<char, longest_result>& room) {
+    text = text.substr(0, room.size());
+    const auto end = std::ranges::remove_copy(text, room.data(), '_').out;
+    return {room.data(), static_cast<std::size_t>(end - room.data())};
+}
+
+}  // namespace
+
+template <class T>
+T number_of_text(const std::byte* from, bool has_groups) {
+    std::array<char, longest_result> room;
+    std::string_view text = text_at(from);
+    if (has_groups) text = without_groups(text, room);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const bool is_negative = text.starts_with('-');
+    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
+    if (text.find_first_of(".0123456789") != 0) return T{};
+    T value{};
+    std::from_chars_result read;
+    if constexpr (std::is_integral_v<T>) {
+        const int base = base_of(text);
+        if (base != 10) text.remove_prefix(text.find('#') + 1);
+        read = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    } else {
+        read = std::from_chars(text.data(), text.data() + text.size(), value);
+    }
+    if (read.ec != std::errc()) return T{};
+    return is_negative ? -value : value;
+}
+
+template void write_number(std::byte*, std::int64_t, bool);
+template void write_number(std::byte*, std::uint64_t, bool);
+template void write_real(std::byte*, double, bool);
+template void write_real(std::byte*, float, bool);
+template std::uint64_t number_of_text(const std::byte*, bool);
+template double number_of_text(const std::byte*, bool);
+
+}  // namespace lineshaft::st::meaning
