@@ -596,11 +596,25 @@ def check_qualified_names():
     twincat("only", "GVL", "Others", "VAR_GLOBAL\n Speed : INT := 9;\n Ready : INT := 5;\nEND_VAR")
     twincat("only", "DUT", "E_State", only + "TYPE E_State : (Init, Ready, Speed := 100); END_TYPE")
     twincat("only", "DUT", "E_Other", only + "TYPE E_Other : (Ready := 50); END_TYPE")
-    twincat("only", "POU", "FB_Names", "FUNCTION_BLOCK FB_Names\nVAR plain, listed, ready, state : INT; END_VAR",
-            "plain := Speed; listed := GVL.Speed; ready := Ready; state := E_State.Ready + E_Other.Ready;")
+    twincat("only", "POU", "FB_Names", "FUNCTION_BLOCK FB_Names\nVAR plain, listed, own, state : INT; END_VAR",
+            "plain := Speed; listed := GVL.Speed; own := Ready; state := E_State.Ready + E_Other.Ready;")
     write("only/names_test.st", "TEST 'names'\nVAR f : FB_Names; END_VAR\nf();\nASSERT_EQ(f.plain, 9);\nASSERT_EQ(f.listed, 7);\n"
-          "ASSERT_EQ(f.ready, 5);\nASSERT_EQ(f.state, 51);\nEND_TEST\n")
+          "ASSERT_EQ(f.own, 5);\nASSERT_EQ(f.state, 51);\nEND_TEST\n")
     assert "1 of 1 passed" in run("test", "only")
+    attributes = ('<addData><data name="http://www.3s-software.com/plcopenxml/attributes" handleUnknown="implementation"><Attributes>'
+                  '<Attribute Name="qualified_only" Value=""/><Attribute Name="strict" Value=""/></Attributes></data></addData>')
+    values = lambda *names: "".join(f'<value name="{name}"/>' for name in names)
+    write("named_values/p.xml",
+          '<?xml version="1.0" encoding="utf-8"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0200"><types><dataTypes>'
+          f'<dataType name="E_State"><baseType><enum><values>{values("Init", "Ready")}</values></enum></baseType>{attributes}</dataType>'
+          '</dataTypes><pous><pou name="FB_Names" pouType="functionBlock"><interface><localVars><variable name="own"><type><INT/></type></variable>'
+          '<variable name="state"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
+          'own := Ready; state := E_State.Ready;</xhtml></ST></body></pou></pous></types><instances><configurations/></instances>'
+          '<addData><data name="http://www.3s-software.com/plcopenxml/globalvars" handleUnknown="implementation"><globalVars name="GVL">'
+          '<variable name="Ready"><type><INT/></type><initialValue><simpleValue value="7"/></initialValue></variable></globalVars></data></addData></project>\n')
+    write("named_values/names_test.st", "TEST 'names'\nVAR f : FB_Names; END_VAR\nf();\nASSERT_EQ(f.own, 7);\nASSERT_EQ(f.state, 1);\nEND_TEST\n")
+    said = run("test", "named_values")
+    assert "1 of 1 passed" in said, said
 
 
 def check_lost_bases():

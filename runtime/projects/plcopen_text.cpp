@@ -388,8 +388,21 @@ void PlcopenText::add_interface_of_blocks(pugi::xml_node interface) {
     write("END_INTERFACE\n", interface);
 }
 
+void PlcopenText::add_attributes(pugi::xml_node element) {
+    const auto value_of = [&](const char* name) {
+        return addition_of(element, "Attributes")
+            .find_child_by_attribute("Attribute", "Name", name);
+    };
+    for (const char* name : {"qualified_only", "strict", "to_string"})
+        if (value_of(name)) write(fmt::format("{{attribute '{}'}}\n", name), element);
+    const std::string mode = file_.plain(value_of("pack_mode").attribute("Value"));
+    if (!mode.empty() && std::ranges::all_of(mode, is_digit))
+        write(fmt::format("{{attribute 'pack_mode' := '{}'}}\n", mode), element);
+}
+
 void PlcopenText::add_type(pugi::xml_node type) {
     if (add_plain(type)) return;
+    add_attributes(type);
     write("TYPE ", type);
     file_.copy(text_, type.attribute("name"));
     add_inheritance(type);
@@ -398,7 +411,9 @@ void PlcopenText::add_type(pugi::xml_node type) {
 }
 
 void PlcopenText::add_globals(pugi::xml_node list) {
-    if (!add_plain(list)) add_section(list, "VAR_GLOBAL");
+    if (add_plain(list)) return;
+    add_attributes(list);
+    add_section(list, "VAR_GLOBAL");
 }
 
 }  // namespace lineshaft::projects

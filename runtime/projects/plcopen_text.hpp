@@ -26,6 +26,8 @@ class PlcopenText {
     }
     /// The declaration as text that CODESYS has beside the elements. False: it has none.
     bool add_plain(pugi::xml_node element);
+    /// Those that say how names and memory are meant, as pragmas.
+    void add_attributes(pugi::xml_node element);
     void add_inheritance(pugi::xml_node element);
     void add_interface(pugi::xml_node interface);
     void add_section(pugi::xml_node section, std::string_view word);

@@ -72,6 +72,27 @@ bool is_instance(Checking& c, const Token& name) {
     return variable && variable->type && variable->type->is_instance();
 }
 
+/// A library's block may stand for PLCopen's of the same name, which has the argument.
+std::string help_with_argument(Checking& c, std::string_view argument, const Routine& routine,
+                               const std::vector<std::string>& names) {
+    if (same_name(argument, "en"))
+        return "EN is for a call that is a statement, or whose value is assigned";
+    const std::string_view full = routine.name;
+    const std::string_view name = full.substr(full.rfind('.') + 1);
+    const BlockType* standard = is_library(routine.pou->name) ? c.catalog.find(name) : nullptr;
+    const auto is_its = [&](const Field& field) {
+        return same_name(field.name, argument) ||
+               same_name(field.name, standard_part_name(argument));
+    };
+    if (!standard || std::ranges::none_of(standard->fields, is_its))
+        return suggest(argument, names);
+    return fmt::format(
+        "PLCopen's {} has it; {} is taken as a name stands here that it alone has, as Buffered, "
+        "which "
+        "is PLCopen's mcBuffered",
+        name, full.substr(0, full.size() - name.size() - 1));
+}
+
 Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std::size_t position) {
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
@@ -95,9 +116,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
         if (variable->is_parameter() || inner) names.emplace_back(variable->text);
     return c.fail(code::wrong_arguments, argument.name.place,
                   fmt::format("'{}' has no argument '{}'", routine.name, argument.name.text),
-                  same_name(argument.name.text, "en")
-                      ? "EN is for a call that is a statement, or whose value is assigned"
-                      : suggest(argument.name.text, names));
+                  help_with_argument(c, argument.name.text, routine, names));
 }
 
 /// A variable of type `given` stands for an output or a VAR_IN_OUT.

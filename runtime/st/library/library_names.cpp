@@ -108,7 +108,8 @@ NameSet declared_names(const Tree& tree) {
             for (const Argument& value : type.values) names.insert(value.name.text);
     for (const DeclarationBlock& block : tree.globals)
         for (const Declaration* variable : block.declarations)
-            if (block.section == Section::global) names.insert(variable->name.text);
+            if (block.section == Section::global && !block.is_qualified_only)
+                names.insert(variable->name.text);
     return names;
 }
 

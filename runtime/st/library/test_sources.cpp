@@ -122,7 +122,8 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
             entry.types.emplace(name, name);
             if (const auto point = block.list.find('.'); point != block.list.npos)
                 entry.types.emplace(name.substr(point + 1), name);
-            if (block.section == Section::global) entry.values.insert(lower(variable->name.text));
+            if (block.section == Section::global && !block.is_qualified_only)
+                entry.values.insert(lower(variable->name.text));
         }
     for (const Expression& e : tree.expressions) {
         if (e.kind == Expression::Kind::member) add_used(entry.used, entry.own, e);
