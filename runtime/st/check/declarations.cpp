@@ -133,8 +133,9 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     const Type* type = resolve(c, *declared.type);
     const std::string_view in_list = name_in_list(c, block, declared);
     Token name = name_of_global(c, declared);
+    const bool is_axis = type && type->kind == Kind::handle;  // which its bare name means, too
     const Variable* const first =
-        block.is_qualified_only ? nullptr : in_another_list(c, block, name);
+        block.is_qualified_only && !is_axis ? nullptr : in_another_list(c, block, name);
     if (first) c.in_several_lists.emplace(name.text, std::pair(first->name, declared.name));
     if (first || block.is_qualified_only) name.text = in_list;
     const bool is_other = is_other_by_capitals(c, name);
@@ -142,7 +143,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
         return nullptr;
     Variable* variable = add(c, c.checked.variables, declared, type);
     c.globals.emplace(in_list, variable);
-    if (type && type->kind == Kind::handle) {
+    if (is_axis) {
         declare_axis(c, block, *variable);
         return variable;
     }

@@ -329,7 +329,6 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         own.name = std::string(name_with_namespace(c, declared.name).text);
         own.is_unnamed = false;
         own.texts_are_names = declared.texts_are_names && own.has_values();
-        own.is_qualified_only = declared.type->is_qualified_only;
         own.is_strict = declared.type->is_strict;
     }
     if (declared.initial) {
@@ -340,6 +339,8 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         check_initial(c, value, copy);
         copy.initial_value = value;
     }
+    if (is_own)  // within the declaration its values have no need of its name
+        const_cast<Type&>(*type).is_qualified_only = declared.type->is_qualified_only;
     auto& values = c.names_beside(declared.name).values;
     const bool are_names = is_own && !declared.type->is_qualified_only;
     for (std::size_t i = 0; i < type->values.size() && are_names; ++i) {
