@@ -315,6 +315,10 @@ class Lexer {
             return void(add(Word::duration));
         }
         if (!find_called(time_prefixes, text)) return;
+        if (&tokens_.source->dialect == &matiec) {
+            skip_while([](char c) { return c == ' ' || c == '\t'; });
+            start_ = at_;
+        }
         if (peek() == '-' || peek() == '+') ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
         add(Word::duration);
