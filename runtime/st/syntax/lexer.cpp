@@ -270,7 +270,7 @@ class Lexer {
             ++at_;
             return void(add(*word));
         }
-        if (skip_picture(text)) return;
+        if (skip_section(text)) return;
         const std::optional<Word> word = word_of(text);
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
         if (!word || after_dot || is_variable) return void(add(Word::name));
@@ -297,13 +297,27 @@ class Lexer {
         return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
     }
 
-    /// CODESYS 2.3 exports pictures beside its units, in a language of their own.
-    bool skip_picture(std::string_view word) {
-        constexpr std::string_view last = "END_VISUALISATION";
-        if (!new_line_ || !same_name(word, "visualisation")) return false;
-        const std::size_t end = text_.find(last, at_);
-        if (end != std::string_view::npos) at_ = end + last.size();
-        return end != std::string_view::npos;
+    /// CoDeSys 2.3 exports pictures, what is connected, alarms, libraries and tasks beside its
+    /// units, in languages of their own.
+    bool skip_section(std::string_view word) {
+        struct Section {
+            std::string_view first, last;
+            bool is_alone;  ///< in its line
+        };
+        static constexpr Section sections[] = {{"visualisation", "END_VISUALISATION", false},
+                                               {"plc_configuration", "PLC_END", true},
+                                               {"_alarmconfig", "_END_ALARMCONFIG", true},
+                                               {"_workspace", "_END_WORKSPACE", true},
+                                               {"library", "END_LIBRARY", true},
+                                               {"resource", "END_RESOURCE", true}};
+        const auto* section = find_called(sections, word, &Section::first);
+        if (!new_line_ || !section || tokens_.source->dialect.vendor != Vendor::codesys)
+            return false;
+        const std::size_t next = text_.find_first_not_of(" \t\r", at_);
+        if (section->is_alone && next != text_.npos && text_[next] != '\n') return false;
+        const std::size_t end = text_.find(section->last, at_);
+        if (end != text_.npos) at_ = end + section->last.size();
+        return end != text_.npos;
     }
 
     void read_prefix(std::string_view text) {
