@@ -210,7 +210,7 @@ BLOCKS = {  # name: inputs, outputs
 
 
 def diagram(draw, name):
-    """Boxes and variables with executionOrderId: what comes from a later one is the value of the last scan."""
+    """Boxes and variables with executionOrderId, as in Beremiz: what comes from a later one is the value of the last scan."""
     net = Network(draw, name)
     kinds = []
     for _ in range(draw.randint(2, 9)):
@@ -267,7 +267,8 @@ def diagram(draw, name):
                 texts.append(text)
             target = entry[1]["OUT"][1]
             statement = f"{target} := {form.format(*(f'({t})' for t in texts))};"
-            net.statements.append(f"IF {enabled} THEN {statement} END_IF" if has_en else statement)
+            nothing = "FALSE" if FUNCTIONS[kind][1] == "BOOL" else "0"
+            net.statements.append(f"IF {enabled} THEN {statement} ELSE {target} := {nothing}; END_IF" if has_en else statement)
             net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*(["ENO"] if has_en else []), "OUT"), 0,
                         typeName=kind, executionOrderId=turn + 1)
         elif kind in BLOCKS:
@@ -778,7 +779,8 @@ def write_project(folder, nets):
 
 
 def write_export(folder, language, nets, name="drawn.xml"):
-    (folder / name).write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader productName="Beremiz"/><types><pous>\n'
+    (folder / name).write_text('<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
+                               f'<fileHeader productName="{"CODESYS" if language == "LD" else "Beremiz"}"/><types><pous>\n'
                                + "".join(net.xml(language) for net in nets) + "</pous></types></project>\n")
     return name
 
@@ -808,7 +810,7 @@ with tempfile.TemporaryDirectory() as temporary:
         nets = [make(draw, f"Net{i}") for i in range(batch)]
         drawn_as = (write_project(folder, nets) if language == "NWL" else write_folders(folder, nets) if language == "rows"
                     else write_export(folder, language, nets))
-        said_as = "said.EXP" if language == "NWL" else "said.st"  # edges and counters of the dialect
+        said_as = "said.EXP" if language in ("NWL", "LD") else "said.st"  # edges and counters of the dialect
         (folder / said_as).write_text("".join(net.text() for net in nets))
         a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", said_as, nets)
         if a != b:

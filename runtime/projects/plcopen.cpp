@@ -50,7 +50,7 @@ class PlcopenProject {
 
   private:
     void add(pugi::xml_node element, void (PlcopenText::*add_to)(pugi::xml_node)) {
-        PlcopenText text(file_, declared_, to_.out);
+        PlcopenText text(file_, declared_, to_.out, is_of_matiec_);
         (text.*add_to)(element);
         SourceFile made = *text.finish(element);
         if (is_of_matiec_) made.read_as = ".matiec";

@@ -252,7 +252,8 @@ void PlcopenText::add_list(pugi::xml_node values, const char* key, int depth) {
 }
 
 BodyText PlcopenText::body_of(pugi::xml_node owner, pugi::xml_node named) {
-    BodyContext context{file_, out_, NetworkTypes(declared_, pou_), *variables_, is_kept_};
+    BodyContext context{file_,       out_,     NetworkTypes(declared_, pou_),
+                        *variables_, is_kept_, is_of_matiec_};
     BodyText all;
     for (const pugi::xml_node body : owner.children("body")) {
         const BodyText made = body_text(context, body, file_.plain(named.attribute("name")));

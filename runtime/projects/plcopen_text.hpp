@@ -10,8 +10,9 @@ namespace lineshaft::projects {
 class PlcopenText {
   public:
     /// `declared` stays where it is.
-    PlcopenText(const XmlFile& file, const DeclaredTypes& declared, Diagnostics& out)
-        : file_(file), declared_(declared), out_(out) {}
+    PlcopenText(const XmlFile& file, const DeclaredTypes& declared, Diagnostics& out,
+                bool is_of_matiec)
+        : file_(file), declared_(declared), out_(out), is_of_matiec_(is_of_matiec) {}
 
     void add_pou(pugi::xml_node pou);
     void add_interface_of_blocks(pugi::xml_node interface);  ///< INTERFACE, an addition of CODESYS
@@ -52,6 +53,7 @@ class PlcopenText {
     const XmlFile& file_;
     const DeclaredTypes& declared_;
     Diagnostics& out_;
+    const bool is_of_matiec_;  ///< see BodyContext
     Excerpts text_;
     std::string pou_;                     ///< whose bodies are read
     MadeVariables* variables_ = nullptr;  ///< of bodies, where they are declared

@@ -171,7 +171,8 @@ Value NetworkText::enabled_of(const Element& box, State& state) {
     Value enabled;
     if (en != box.inputs.end()) enabled = value_of(box, *en);
     const auto eno = std::ranges::find_if(box.outputs, is_eno);
-    const bool is_kept = eno != box.outputs.end() && is_used(state, *eno);
+    const bool is_kept =
+        context_.is_of_matiec || (eno != box.outputs.end() && is_used(state, *eno));
     const Mark place = place_of(box);
     if (is_kept && !enabled.is_empty() && !enabled.is_always)
         enabled = kept_in(context_.variables.make("_wire", "BOOL"), enabled, place);
@@ -277,6 +278,7 @@ std::optional<std::size_t> NetworkText::only_target(std::size_t i) const {
     for (const Use& use : state.uses) {
         if (use.pin == "eno") continue;
         const Element& to = drawing_.elements[use.by];
+        if (context_.is_of_matiec && !states_[use.by].is_active) return std::nullopt;
         const bool is_plain = to.kind == Drawn::out_variable && to.inputs.size() == 1 &&
                               to.inputs.front().lines.size() == 1 &&
                               attribute(to, "negated") != "true" &&
@@ -317,7 +319,7 @@ void NetworkText::call_function(std::size_t i) {
         return;
     }
     const bool must_be_kept = is_guarded || !state.outputs.empty();
-    const bool is_better_kept = state.uses.size() > 1 || has_own_turn(i);
+    const bool is_better_kept = state.uses.size() > 1 || has_own_turn(i) || ends_in_chart();
     if (!is_variable && !must_be_kept && state.loop.empty() && !is_better_kept) {
         state.value = value;
         return;
@@ -326,7 +328,10 @@ void NetworkText::call_function(std::size_t i) {
     if (target.is_empty() && must_be_kept)
         refuse(box, fmt::format("the type of what '{}' gives is not known here", type_name_of(box)),
                "connect it to a variable, and take its value from there");
-    if (!target.is_empty()) write_guarded(is_guarded ? enabled : Value{}, target, value, place);
+    const bool is_own = context_.is_of_matiec && !only_target(i);
+    if (!target.is_empty())
+        write_guarded(is_guarded ? enabled : Value{}, target, value, place,
+                      is_guarded && is_own ? initial_value(target.type) : std::string());
     state.value = target.is_empty() ? value : target;
     if (is_variable && !takes_result(box, state))
         write_assignment(written(box, result->expression),
@@ -367,9 +372,43 @@ std::string NetworkText::type_of_takers(std::size_t i) const {
     return {};
 }
 
-/// `IF enabled THEN target := value; END_IF`
+/// What a variable of the type begins with; empty: not known.
+std::string NetworkText::initial_value(const std::string& type) {
+    static constexpr std::string_view numbers[] = {"#",     "sint",  "int",   "dint",  "lint",
+                                                   "usint", "uint",  "udint", "ulint", "byte",
+                                                   "word",  "dword", "lword"};
+    const std::string name = lower(type);
+    if (name == "bool") return "FALSE";
+    if (name == "real" || name == "lreal") return "0.0";
+    if (name == "time") return "T#0s";
+    if (type.empty()) return {};
+    if (std::ranges::find(numbers, name) != std::end(numbers)) return "0";
+    return context_.variables.make("_none", type);
+}
+
+/// MatIEC's editors let a variable keep its value where the one function that leads to it has
+/// done nothing.
+Value NetworkText::enabled_with(const Element& variable) const {
+    const bool is_variable =
+        variable.kind == Drawn::out_variable || variable.kind == Drawn::in_out_variable;
+    const auto& inputs = variable.inputs;
+    if (!context_.is_of_matiec || !is_variable || inputs.front().lines.size() != 1) return {};
+    const std::size_t from = inputs.front().lines.front().from;
+    const bool is_function = drawing_.elements[from].kind == Drawn::block &&
+                             attribute(drawing_.elements[from], "instanceName").empty();
+    const Value& enabled = states_[from].enabled;
+    return is_function && !enabled.is_always ? enabled : Value{};
+}
+
+/// Where transitions look at what was evaluated at the end of the last scan.
+bool NetworkText::ends_in_chart() const {
+    return context_.is_of_matiec && std::ranges::find(drawing_.elements, Drawn::transition,
+                                                      &Element::kind) != drawing_.elements.end();
+}
+
+/// `IF enabled THEN target := value; ELSE target := otherwise; END_IF`
 void NetworkText::write_guarded(const Value& enabled, const Value& target, const Value& value,
-                                const Mark& place) {
+                                const Mark& place, std::string_view otherwise) {
     if (!enabled.is_empty()) {
         now_.write("IF ", place);
         now_.append(enabled.text);
@@ -383,6 +422,11 @@ void NetworkText::write_guarded(const Value& enabled, const Value& target, const
         now_.write(" := ", place);
         now_.append(value.text);
         now_.write(";", place);
+    }
+    if (!otherwise.empty()) {
+        now_.write(" ELSE ", place);
+        now_.append(target.text);
+        now_.write(fmt::format(" := {};", otherwise), place);
     }
     now_.write(enabled.is_empty() ? "\n" : " END_IF\n", place);
 }

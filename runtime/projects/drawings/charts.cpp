@@ -43,6 +43,8 @@ class ChartText {
     void add_steps(const Nodes& steps, pugi::xml_node transition);
     Excerpts condition_of(pugi::xml_node transition);
     Excerpts inline_condition(pugi::xml_node body, const std::string& result);
+    void add_networks(const Nodes& transitions);
+    Excerpts drawn_condition(pugi::xml_node transition);
     Excerpts condition_of_statements(Excerpts before, const Excerpts& value, pugi::xml_node at);
     pugi::xml_node named_transition(const std::string& name) const;
 
@@ -68,6 +70,9 @@ class ChartText {
     pugi::xml_node chart_, pou_;
     std::map<std::string, pugi::xml_node> by_id_;
     std::map<std::string, Nodes> behind_;  ///< by `localId`: what lines lead to
+    /// Of MatIEC's transitions: what their lines carry.
+    std::vector<std::pair<pugi::xml_node, Excerpts>> drawn_;
+    std::string networks_;  ///< the action that evaluates what leads to them
     BodyText made_;
 };
 
@@ -140,6 +145,7 @@ BodyText ChartText::read() {
         for (const pugi::xml_node source : sources_of(node))
             behind_[text(source, "localId")].push_back(node);
     }
+    if (context_.is_of_matiec) add_networks(transitions);
     const auto place = [&](pugi::xml_node node) {
         return std::make_pair(coordinate(file_, node, "y"), coordinate(file_, node, "x"));
     };
@@ -161,7 +167,23 @@ void ChartText::add_step(pugi::xml_node step) {
             if (is(block, "actionBlock"))
                 for (const pugi::xml_node action : block.children("action")) add_action(action);
     add_own_actions(step);
+    if (!networks_.empty() && text(step, "initialStep") == "true")
+        write(fmt::format("    {}(S);\n", networks_), step);
     write("END_STEP\n", step);
+}
+
+/// MatIEC's editors have the boxes that lead to transitions in an action that the initial step
+/// sets, so that they run in every scan; transitions look at what they gave in the last one.
+void ChartText::add_networks(const Nodes& transitions) {
+    NetworkText networks(context_, chart_);
+    for (const pugi::xml_node transition : transitions)
+        if (transition.child("condition").child("connectionPointIn"))
+            drawn_.emplace_back(transition, networks.condition(transition).text);
+    if (networks.before().is_empty()) return;
+    networks_ = context_.variables.name("_networks");
+    made_.members.write(fmt::format("ACTION {}:\n", networks_), place_of(chart_));
+    made_.members.append(networks.before());
+    made_.members.write("END_ACTION\n", place_of(chart_));
 }
 
 /// Those that CODESYS keeps at the step itself: at its beginning, while it is active, at its end.
@@ -265,10 +287,8 @@ Excerpts ChartText::condition_of(pugi::xml_node transition) {
             file_.copy(made, reference.attribute("name"));
     } else if (const pugi::xml_node own = condition.child("inline")) {
         made = inline_condition(own, text(own, "name"));
-    } else if (const pugi::xml_node point = condition.child("connectionPointIn")) {
-        NetworkText networks(context_, chart_);
-        const Value value = networks.condition(point);
-        made = condition_of_statements(networks.before(), value.text, transition);
+    } else if (condition.child("connectionPointIn")) {
+        made = drawn_condition(transition);
     }
     if (made.is_empty()) {
         refuse(transition, "this transition has no condition", "write TRUE if it needs none");
@@ -280,6 +300,15 @@ Excerpts ChartText::condition_of(pugi::xml_node transition) {
     negated.append(made);
     negated.write(")", place);
     return negated;
+}
+
+Excerpts ChartText::drawn_condition(pugi::xml_node transition) {
+    const auto known =
+        std::ranges::find(drawn_, transition, &std::pair<pugi::xml_node, Excerpts>::first);
+    if (known != drawn_.end()) return known->second;
+    NetworkText networks(context_, chart_);
+    const Value value = networks.condition(transition);
+    return condition_of_statements(networks.before(), value.text, transition);
 }
 
 /// `:= a;` and `a` are what they say; a network that ends at `result` is what comes there.

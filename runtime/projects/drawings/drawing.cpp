@@ -33,7 +33,8 @@ constexpr DrawnElement drawn_elements[] = {{"contact", Drawn::contact, "contact"
                                            {"connector", Drawn::connector, "connector"},
                                            {"continuation", Drawn::continuation, "continuation"},
                                            {"leftPowerRail", Drawn::left_rail, "power rail"},
-                                           {"rightPowerRail", Drawn::right_rail, "power rail"}};
+                                           {"rightPowerRail", Drawn::right_rail, "power rail"},
+                                           {"transition", Drawn::transition, "transition"}};
 
 /// What stands beside networks and does nothing in them, and the elements of a chart.
 constexpr std::string_view others[] = {"comment",
@@ -44,12 +45,16 @@ constexpr std::string_view others[] = {"comment",
                                        "step",
                                        "macroStep",
                                        "jumpStep",
-                                       "transition",
                                        "selectionDivergence",
                                        "selectionConvergence",
                                        "simultaneousDivergence",
                                        "actionBlock",
                                        "simultaneousConvergence"};
+
+/// What leads to a transition, where that is drawn.
+pugi::xml_node condition_point(pugi::xml_node transition) {
+    return transition.child("condition").child("connectionPointIn");
+}
 
 bool is_title(pugi::xml_node element) {
     for (const pugi::xml_node data : element.child("addData").children("data"))
@@ -61,7 +66,8 @@ bool is_title(pugi::xml_node element) {
 /// Reads the elements, then the lines, whose ends may come before their beginnings.
 class DrawingReader {
   public:
-    DrawingReader(const XmlFile& file, Diagnostics& out) : file_(file), out_(out) {}
+    DrawingReader(const XmlFile& file, Diagnostics& out, DrawnOrder order)
+        : file_(file), out_(out), order_(order) {}
 
     Drawing read(pugi::xml_node body) {
         for (const pugi::xml_node node : body.children()) add(node);
@@ -82,6 +88,7 @@ class DrawingReader {
     void find_networks();
     void place_labels();
     void put_in_order();
+    bool is_as_in_document() const;
 
     std::string text(pugi::xml_node node, const char* attribute) const {
         return file_.plain(node.attribute(attribute));
@@ -96,6 +103,7 @@ class DrawingReader {
 
     const XmlFile& file_;
     Diagnostics& out_;
+    const DrawnOrder order_;
     Drawing made_;
     std::map<std::string, std::size_t, std::less<>> by_id_;
     std::size_t titles_ = 0;
@@ -118,14 +126,17 @@ void DrawingReader::add(pugi::xml_node node) {
                      fmt::format("<{}> is no element of a network", tag), "leave it out");
         return;
     }
+    if (known->kind == Drawn::transition && !condition_point(node)) return;
+    const bool has_no_order = order_ == DrawnOrder::document && known->kind == Drawn::coil;
     const pugi::xml_node position = node.child("position");
-    made_.elements.push_back({.kind = known->kind,
-                              .node = node,
-                              .id = text(node, "localId"),
-                              .order = number<std::int64_t>(node, "executionOrderId"),
-                              .x = number<double>(position, "x"),
-                              .y = number<double>(position, "y"),
-                              .network = titles_});
+    made_.elements.push_back(
+        {.kind = known->kind,
+         .node = node,
+         .id = text(node, "localId"),
+         .order = has_no_order ? 0 : number<std::int64_t>(node, "executionOrderId"),
+         .x = number<double>(position, "x"),
+         .y = number<double>(position, "y"),
+         .network = titles_});
     by_id_.emplace(made_.elements.back().id, made_.elements.size() - 1);
 }
 
@@ -186,7 +197,9 @@ void DrawingReader::add_pins(Element& element) {
         element.inputs.push_back(std::move(pin));
         return;
     }
-    if (const pugi::xml_node point = node.child("connectionPointIn")) {
+    const pugi::xml_node point =
+        element.kind == Drawn::transition ? condition_point(node) : node.child("connectionPointIn");
+    if (point) {
         const bool is_both = element.kind == Drawn::in_out_variable;
         Pin pin{.node = node, .is_negated = is_both && text(node, "negatedIn") == "true"};
         add_lines(pin, point);
@@ -259,6 +272,13 @@ void DrawingReader::place_labels() {
     }
 }
 
+bool DrawingReader::is_as_in_document() const {
+    return order_ == DrawnOrder::document &&
+           std::ranges::none_of(made_.elements, [](const Element& element) {
+               return element.kind == Drawn::jump || element.kind == Drawn::return_;
+           });
+}
+
 void DrawingReader::put_in_order() {
     const auto& elements = made_.elements;
     made_.order.resize(elements.size());
@@ -270,13 +290,21 @@ void DrawingReader::put_in_order() {
         return std::make_tuple(element.order <= 0, std::max<std::int64_t>(element.order, 0),
                                element.network, rank, element.y, element.x, i);
     };
-    std::ranges::sort(made_.order, {}, key);
+    const auto place_in_document = [&](std::size_t i) {
+        const Element& element = elements[i];
+        return std::make_tuple(element.order <= 0, std::max<std::int64_t>(element.order, 0),
+                               element.kind == Drawn::block, i);
+    };
+    if (is_as_in_document())
+        std::ranges::sort(made_.order, {}, place_in_document);
+    else
+        std::ranges::sort(made_.order, {}, key);
 }
 
 }  // namespace
 
-Drawing read_drawing(const XmlFile& file, pugi::xml_node body, Diagnostics& out) {
-    return DrawingReader(file, out).read(body);
+Drawing read_drawing(const XmlFile& file, pugi::xml_node body, Diagnostics& out, DrawnOrder order) {
+    return DrawingReader(file, out, order).read(body);
 }
 
 std::string_view word_of(Drawn kind) {

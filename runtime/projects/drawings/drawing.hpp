@@ -21,7 +21,8 @@ enum class Drawn : std::uint8_t {
     connector,
     continuation,
     left_rail,
-    right_rail
+    right_rail,
+    transition  ///< of a chart, what leads to its condition
 };
 
 /// A line that comes from an element's output.
@@ -32,6 +33,8 @@ struct Line {
 
 enum class Edge : std::uint8_t { none, rising, falling };
 enum class Storage : std::uint8_t { none, set, reset };
+/// Whose order of evaluation a drawing has: that of CODESYS' networks, or that of MatIEC's editors.
+enum class DrawnOrder : std::uint8_t { networks, document };
 
 /// Where lines end: several of them are a wired OR.
 struct Pin {
@@ -60,13 +63,15 @@ struct Drawing {
     std::vector<Element> elements;  ///< as they stand in the file
     /// Elements in the order of evaluation, but that what comes from others waits for these: by
     /// `executionOrderId`, then networks from top to bottom, and elements in them likewise, then
-    /// from left to right. Jumps and returns come last in their networks.
+    /// from left to right. Jumps and returns come last in their networks. DrawnOrder::document: by
+    /// `executionOrderId` of boxes and variables, then coils and variables as they stand in the
+    /// file, then boxes; with jumps, which those editors do not have, as above.
     std::vector<std::size_t> order;
 };
 
 /// Reads `<FBD>`, `<LD>` or what an `<SFC>` has of their elements. What is none of a network, and
 /// lines that come from nowhere, are told.
-Drawing read_drawing(const XmlFile& file, pugi::xml_node body, Diagnostics& out);
+Drawing read_drawing(const XmlFile& file, pugi::xml_node body, Diagnostics& out, DrawnOrder order);
 
 /// `contact`: the word for it in messages.
 std::string_view word_of(Drawn kind);

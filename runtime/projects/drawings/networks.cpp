@@ -1,5 +1,6 @@
 #include "runtime/projects/drawings/networks.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,7 +12,7 @@ namespace lineshaft::projects {
 namespace {
 
 constexpr int deepest_line = 400;
-constexpr std::size_t longest_value = 1U << 16;
+constexpr std::size_t longest_value = 1U << 16, longest_read_again = 1U << 10;
 
 }  // namespace
 
@@ -29,7 +30,8 @@ void MadeVariables::declare(std::string_view name, std::string_view type) {
 NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
     : context_(context),
       file_(context.file),
-      drawing_(read_drawing(context.file, body, context.out)),
+      drawing_(read_drawing(context.file, body, context.out,
+                            context.is_of_matiec ? DrawnOrder::document : DrawnOrder::networks)),
       jumps_(context.variables, labels()),
       states_(drawing_.elements.size()) {
     for (std::size_t i = 0; i < drawing_.elements.size(); ++i) {
@@ -59,18 +61,10 @@ Excerpts NetworkText::statements() {
     return jumps_.finish(std::exchange(now_, {}));
 }
 
-Value NetworkText::condition(pugi::xml_node connection_point) {
-    Value value;
-    const Mark place = file_.mark_of_tag(connection_point);
-    for (const pugi::xml_node connection : connection_point.children("connection")) {
-        const std::string id = file_.plain(connection.attribute("refLocalId"));
-        for (std::size_t i = 0; i < drawing_.elements.size(); ++i)
-            if (drawing_.elements[i].id == id)
-                value = either(
-                    std::move(value),
-                    value_of(Line{i, file_.plain(connection.attribute("formalParameter"))}), place);
-    }
-    return value;
+Value NetworkText::condition(pugi::xml_node transition) {
+    const auto drawn = std::ranges::find(drawing_.elements, transition, &Element::node);
+    if (drawn == drawing_.elements.end() || drawn->inputs.empty()) return {};
+    return value_of(*drawn, drawn->inputs.front());
 }
 
 std::string NetworkText::name_of(const Element& element) const {
@@ -234,9 +228,16 @@ Value NetworkText::value_of_wire(std::size_t i) {
     }
     if (!state.loop.empty())
         state.value = kept_in(state.loop, value, place);
-    else if (state.uses.size() > 1 && !value.type.empty() && value.type != "#")
+    else if (state.uses.size() > 1 && !value.type.empty() && value.type != "#" &&
+             !is_read_again(value))
         state.value = kept_in(context_.variables.make("_wire", value.type), value, place);
     return state.value.value_or(value);
+}
+
+/// MatIEC's editors write the contacts of a rung for each of its coils, which so sees what those
+/// before it have assigned.
+bool NetworkText::is_read_again(const Value& value) const {
+    return context_.is_of_matiec && value.text.text().size() < longest_read_again;
 }
 
 /// A line that goes around: the value of the last scan.
@@ -334,14 +335,15 @@ void NetworkText::assign(std::size_t i) {
                                  "it keeps its value: draw a line to it, or remove it");
     if (is_coil && !states_[i].uses.empty())
         states_[i].value = value =
-            value.is_always ? value
-                            : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
+            value.is_always || is_read_again(value)
+                ? value
+                : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
     if (element.kind != Drawn::in_out_variable) {
         if (attribute(element, "negated") == "true") value = negated(value, place);
         value = edge_of(value, edge_of_attribute(element), element);
     }
     const Value target = written(element, element.node.child(is_coil ? "variable" : "expression"));
-    if (!is_stored(element)) return write_assignment(target, value, place);
+    if (!is_stored(element)) return write_guarded(enabled_with(element), target, value, place);
     now_.write("IF ", place);
     now_.append(value.text);
     now_.write(" THEN ", place);

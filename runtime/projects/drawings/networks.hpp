@@ -37,7 +37,8 @@ struct BodyContext {
     Diagnostics& out;
     NetworkTypes types;
     MadeVariables& variables;
-    bool is_kept = true;  ///< variables keep their values from scan to scan
+    bool is_kept = true;        ///< variables keep their values from scan to scan
+    bool is_of_matiec = false;  ///< drawn with the editors of OpenPLC, Beremiz and their like
 };
 
 /// A body of networks as statements.
@@ -52,7 +53,7 @@ class NetworkText {
     /// All that the body does.
     Excerpts statements();
     /// What lines carry that end in a chart's transition, and what is done for it before.
-    Value condition(pugi::xml_node connection_point);
+    Value condition(pugi::xml_node transition);
     const Excerpts& before() const { return now_; }
 
   private:
@@ -91,6 +92,7 @@ class NetworkText {
     Value words(std::string_view text, const Mark& place, std::string type = {}) const;
     bool comes_later(const Element& element) const;
     bool is_stored(const Element& element) const;
+    bool is_read_again(const Value& value) const;
     Edge edge_of_attribute(const Element& element) const;
     Mark place_of(const Element& element) const;
     std::string name_of(const Element& element) const;
@@ -109,8 +111,11 @@ class NetworkText {
     Value in_between(const Element& box, const Arguments& arguments);
     Arguments other_outputs(std::size_t i);
     Value target_of(std::size_t i, const std::string& type);
+    Value enabled_with(const Element& variable) const;
+    bool ends_in_chart() const;
+    std::string initial_value(const std::string& type);
     void write_guarded(const Value& enabled, const Value& target, const Value& value,
-                       const Mark& place);
+                       const Mark& place, std::string_view otherwise = {});
     Value enabled_of(const Element& box, State& state);
     std::string variable_of_eno(const Element& box, State& state);
     Value value_of_box(std::size_t i, const std::string& name);

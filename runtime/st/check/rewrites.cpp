@@ -23,6 +23,17 @@ bool is_timer(const Type& type) {
            std::ranges::any_of(type.members, [](const Variable* m) { return m->text == "pt"; });
 }
 
+/// What a function of MatIEC gives where EN is FALSE.
+void assign_initial_value(Checking& c, const Statement& s, Block& to) {
+    if (s.kind != S::assign || &s.place.dialect() != &matiec) return;
+    Expression* target = s.target;
+    const Type* type = check(c, target);
+    const bool is_elementary = type && (type->kind <= Kind::time ||
+                                        (type->kind >= Kind::date && type->kind <= Kind::text));
+    if (!is_elementary || type->kind == Kind::interface) return;
+    to.push_back(make_assignment(c, s.place, target, make_constant(c, *s.value, *type, {})));
+}
+
 /// `y := f(EN := go, a := x, ENO => ok);` is an IF around `y := f(a := x, ENO => ok);`
 Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     const Expression& call = *s.value;
@@ -39,6 +50,7 @@ Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     Block then = {make_with(c, s, make_with(c, call, std::move(others)))}, otherwise;
     if (enabled && !has_eno) then.push_back(eno_is(true));
     if (enabled) otherwise.push_back(eno_is(false));
+    assign_initial_value(c, s, otherwise);
     return make_if(c, s.place, condition, std::move(then), std::move(otherwise));
 }
 

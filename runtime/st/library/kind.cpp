@@ -79,6 +79,7 @@ std::string why(const std::byte* block, const Context& context, const NameOf&) {
     const auto& kind = *static_cast<const KindContext*>(context.kind);
     if (!kind.failure.empty()) return kind.failure;
     const FaultPlace found = fault_of(*kind.code, block);
+    if (found.fault == Fault::none) return {};  // the error is forced
     std::string text =
         fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
     for (std::size_t i = 0; i < found.calls.size(); ++i)

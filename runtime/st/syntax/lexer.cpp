@@ -272,7 +272,7 @@ class Lexer {
             return void(add(*word));
         }
         if (!after_dot && is_classic_bit(text)) return skip_bit();
-        if (skip_picture(text)) return;
+        if (skip_section(text)) return;
         const std::optional<Word> word = word_of(text);
         if (is_title(text)) return add(Word::name), skip_to_end_of_line();
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
@@ -317,13 +317,27 @@ class Lexer {
         return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
     }
 
-    /// CODESYS 2.3 exports pictures beside its units, in a language of their own.
-    bool skip_picture(std::string_view word) {
-        constexpr std::string_view last = "END_VISUALISATION";
-        if (!new_line_ || !same_name(word, "visualisation")) return false;
-        const std::size_t end = text_.find(last, at_);
-        if (end != std::string_view::npos) at_ = end + last.size();
-        return end != std::string_view::npos;
+    /// CoDeSys 2.3 exports pictures, what is connected, alarms, libraries and tasks beside its
+    /// units, in languages of their own.
+    bool skip_section(std::string_view word) {
+        struct Section {
+            std::string_view first, last;
+            bool is_alone;  ///< in its line
+        };
+        static constexpr Section sections[] = {{"visualisation", "END_VISUALISATION", false},
+                                               {"plc_configuration", "PLC_END", true},
+                                               {"_alarmconfig", "_END_ALARMCONFIG", true},
+                                               {"_workspace", "_END_WORKSPACE", true},
+                                               {"library", "END_LIBRARY", true},
+                                               {"resource", "END_RESOURCE", true}};
+        const auto* section = find_called(sections, word, &Section::first);
+        if (!new_line_ || !section || tokens_.source->dialect.vendor != Vendor::codesys)
+            return false;
+        const std::size_t next = text_.find_first_not_of(" \t\r", at_);
+        if (section->is_alone && next != text_.npos && text_[next] != '\n') return false;
+        const std::size_t end = text_.find(section->last, at_);
+        if (end != text_.npos) at_ = end + section->last.size();
+        return end != text_.npos;
     }
 
     void read_prefix(std::string_view text) {
@@ -335,6 +349,10 @@ class Lexer {
             return void(add(Word::duration));
         }
         if (!find_called(time_prefixes, text)) return;
+        if (&tokens_.source->dialect == &matiec) {
+            skip_while([](char c) { return c == ' ' || c == '\t'; });
+            start_ = at_;
+        }
         if (peek() == '-' || peek() == '+') ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
         add(Word::duration);
