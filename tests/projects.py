@@ -744,6 +744,27 @@ def check_axes_of_suites():
     assert "TEST_FINISHED is missing; 'lost' in line" in said and "has no axis, as it is of a call: declare it in VAR of 'Suite'" in said, said
 
 
+def check_suites_of_programs():
+    """Suites stand in any program that the one with RUN calls, or that a task runs beside it; their tests are told of the task."""
+    twincat("apart", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR_INPUT ready : BOOL; END_VAR\nVAR n, first : UDINT; END_VAR",
+            "TEST('counts'); n := n + 1; IF n = 1 THEN first := _TaskInfo[GETCURTASKINDEXEX()].CycleCount; END_IF\n"
+            "AssertEquals_UDINT(100000, _TaskInfo[GETCURTASKINDEXEX()].CycleTime, 'in 100 ns');\n"
+            "IF n = 11 THEN AssertEquals_UDINT(10, _TaskInfo[GETCURTASKINDEXEX()].CycleCount - first, 'cycles'); AssertTrue(ready, 'ready');\n"
+            "TEST_FINISHED(); END_IF")
+    twincat("apart", "POU", "Group", "FUNCTION_BLOCK Group\nVAR suites : ARRAY[1..2] OF Suite := [(ready := TRUE), (ready := TRUE)]; END_VAR")
+    twincat("apart", "POU", "Called", "PROGRAM Called\nVAR group : Group; END_VAR")
+    twincat("apart", "POU", "Beside", "PROGRAM Beside\nVAR suite : Suite; END_VAR", "suite.ready := TRUE;")
+    twincat("apart", "POU", "Else", "PROGRAM Else\nVAR n : INT; END_VAR", "this is not understood")
+    twincat("apart", "POU", "MAIN", "PROGRAM MAIN", "Called();\nTcUnit.RUN();")
+    write("apart/PlcTask.TcTTO", TASK)
+    write("apart/Other.TcTTO", TASK.replace("PlcTask", "Other").replace("<Name>MAIN</Name></PouCall>", "<Name>Beside</Name></PouCall><PouCall><Name>Else</Name></PouCall>"))
+    plcproj("apart/Apart.plcproj", "Apart", ["Suite.TcPOU", "Group.TcPOU", "Called.TcPOU", "Beside.TcPOU", "Else.TcPOU", "MAIN.TcPOU", "PlcTask.TcTTO", "Other.TcTTO"],
+            [("TcUnit", "TcUnit")])
+    assert "3 of 3 passed" in run("test", "apart")
+    listed = run("test", "apart", "--list")
+    assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
+
+
 def check_axes_that_are_referred_to():
     """A pointer or a reference to an axis of a list, or to what a method was given, is to that axis from then on."""
     twincat("referred", "GVL", "GVL", "VAR_GLOBAL\n one, two : AXIS_REF;\nEND_VAR")
@@ -853,6 +874,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_axes_of_lists()
     check_called_programs()
     check_axes_of_suites()
+    check_suites_of_programs()
     check_axes_that_are_referred_to()
     check_foreign_names()
     check_hostile()

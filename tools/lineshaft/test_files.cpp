@@ -13,6 +13,7 @@
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/suites.hpp"
 #include "runtime/st/library/test_suite.hpp"
 #include "runtime/study/report.hpp"
@@ -287,14 +288,45 @@ void run_suite(const TestFile& tests, const st::TestSuite& suite, const TestOpti
     }
 }
 
+bool is_program_of(const SourceFile& source, std::string_view name) {
+    return st::same_name(source.part, name) ||
+           st::same_name(fs::path(source.path).stem().string(), name);
+}
+
+/// Programs that tasks run beside that one, and in whose blocks suites may stand.
+std::vector<std::string> programs_beside(const TestFile& tests, const projects::Project& project,
+                                         const SourceFile& program) {
+    const auto is_of_suites = [](const std::shared_ptr<const SourceFile>& source) {
+        return lower(source->text).find("fb_testsuite") != std::string::npos;
+    };
+    std::vector<std::string> names;
+    for (const projects::ProjectTask& task : project.tasks)
+        for (const projects::Name& name : task.programs) {
+            const auto is_it = [&](const auto& source) {
+                return is_program_of(*source, name.text) && st::calls_suites(source);
+            };
+            const bool is_run =
+                is_program_of(program, name.text) || std::ranges::any_of(project.sources, is_it);
+            if (!is_run && std::ranges::any_of(tests.sources->needed_by({name.text}), is_of_suites))
+                names.push_back(name.text);
+        }
+    return names;
+}
+
 std::vector<SuiteEntry> test_suites(const TestFile& tests,
                                     const std::shared_ptr<const SourceFile>& program,
-                                    std::int64_t cycle, const TestOptions& options) {
+                                    std::int64_t cycle, const TestOptions& options,
+                                    const std::vector<std::string>& beside) {
     Diagnostics out;
     const double start = wall_seconds();
+    auto sources = tests.sources->needed_by(program);
+    for (const auto& source : tests.sources->needed_by(beside)) {
+        const auto is_it = [&](const auto& known) { return known->is_same_text(*source); };
+        if (!is_it(program) && std::ranges::none_of(sources, is_it)) sources.push_back(source);
+    }
     const auto ran =
-        st::run_suites(program, tests.sources->needed_by(program), standard_blocks(), cycle, out,
-                       {.interrupt = &interrupt_requested, .at_work = options.at_work});
+        st::run_suites(program, sources, standard_blocks(), cycle, out,
+                       {.interrupt = &interrupt_requested, .at_work = options.at_work}, {}, beside);
     if (!ran) return {wrong(tests.path, out.render())};
     const double each =
         (wall_seconds() - start) / static_cast<double>(std::max<std::size_t>(1, ran->size()));
@@ -314,11 +346,6 @@ std::vector<SuiteEntry> test_suites(const TestFile& tests,
     return entries;
 }
 
-bool is_program_of(const SourceFile& source, std::string_view name) {
-    return st::same_name(source.part, name) ||
-           st::same_name(fs::path(source.path).stem().string(), name);
-}
-
 /// The programs of a file or a project that run suites.
 std::vector<SuiteEntry> test_project(const TestFile& tests, const TestOptions& options) {
     constexpr std::int64_t usual_cycle = 10'000'000;  // [ns] of a task of TwinCAT
@@ -330,7 +357,8 @@ std::vector<SuiteEntry> test_project(const TestFile& tests, const TestOptions& o
         for (const projects::ProjectTask& task : project.tasks)
             for (const projects::Name& name : task.programs)
                 if (task.every > 0 && is_program_of(*source, name.text)) cycle = task.every;
-        auto found = test_suites(tests, source, cycle, options);
+        auto found =
+            test_suites(tests, source, cycle, options, programs_beside(tests, project, *source));
         std::ranges::move(found, std::back_inserter(entries));
     }
     if (entries.empty() && tests.is_named && !options.filter)

@@ -336,18 +336,22 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
 
 namespace {
 
+/// What is given to a call is constructed already.
+bool is_to_begin(const Checking& c, const Variable& variable) {
+    if (variable.space == Space::global) return !c.routine;
+    if (variable.space != Space::frame || !c.routine) return false;
+    return !is_of_call(*c.routine, variable) || variable.section == Section::local ||
+           variable.section == Section::temp;
+}
+
 void begin_in(Checking& c, Variable& variable, Phase phase) {
-    const Type* type = variable.type;
-    const bool is_own = type && variable.space == Space::frame;
-    const bool is_global = variable.space == Space::global && !c.routine;
-    const bool stays =
-        c.routine && (c.routine->has_instances() || variable.section == Section::kept);
-    if (!is_called(c, phase, type) || !(is_own ? stays : is_global)) return;
+    if (!is_called(c, phase, variable.type) || !is_to_begin(c, variable)) return;
     const Expression like = like_name(variable.name, variable.name.place);
-    Routine& of = is_own ? *c.routine : begin_of_globals(c, like);
+    Routine& of = c.routine ? *c.routine : begin_of_globals(c, like);
     construct(
-        c, {like, of.variables, of.pou, phase}, *type, variable.constructed,
-        [&] { return named(c, like, variable); }, is_own ? of.begins : of.call_begins);
+        c, {like, of.variables, of.pou, phase}, *variable.type, variable.constructed,
+        [&] { return named(c, like, variable); },
+        c.routine && !is_of_call(*c.routine, variable) ? of.begins : of.call_begins);
 }
 
 }  // namespace

@@ -462,15 +462,16 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
             }
         }
     }
+    if (callee.kind == E::name)
+        if (const Routine* block = block_with_method(c, callee.token)) {
+            Routine& first = *find_in(block->methods, callee.token.text);
+            Routine& method = overload_of(c, *e, block->overloads, first);
+            e->is_dispatched = method.is_replaced;
+            return check_routine_call(c, e, method, as_statement);
+        }
     if (callee.kind == E::name && !find_variable(c, callee.token)) declare_program(c, callee.token);
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
-        for (const Routine* r = c.routine; r; r = r->owner)
-            if (Routine* first = find_in(r->methods, name)) {
-                Routine& method = overload_of(c, *e, r->overloads, *first);
-                e->is_dispatched = method.is_replaced;
-                return check_routine_call(c, e, method, as_statement);
-            }
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||

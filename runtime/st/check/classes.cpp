@@ -350,7 +350,7 @@ Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     }
     const Routine* block = own_block(c);
     if (e.kind != E::name || !block || e.token.local || e.token.quoted) return nullptr;
-    return find_variable(c, e.token) ? nullptr : in(*block);
+    return is_own_variable(c, e.token) ? nullptr : in(*block);
 }
 
 /// Of a call of a PROPERTY's method: what stands before the point, or THIS.
@@ -368,6 +368,23 @@ const Type* check_getter(Checking& c, Expression*& e, Routine& getter) {
     return e->type = check_method_call(c, e, getter, receiver, false);
 }
 
+/// A REFERENCE TO is given by REF= alone, to SET; else what GET refers to is assigned.
+static bool is_written_through(const Statement& s, const Routine* getter) {
+    const Type* type = getter && getter->result ? getter->result->type : nullptr;
+    return type && type->is_alias() && s.op != Word::reference_assign;
+}
+
+/// `got REF= property; got := value;`
+static void write_through(Checking& c, Statement*& s, const Type& type) {
+    Variable& got = c.make_variable(*c.routine, s->target->token, "GET", &type);
+    Statement* first = make_assignment(c, s->place, make_use(c, *s->target, got), s->target);
+    first->op = Word::reference_assign;
+    Statement* then = make_assignment(c, s->place, make_use(c, *s->target, got), s->value);
+    then->op = s->op;
+    s = make_sequence(c, s->place, {first, then});
+    check(c, s);
+}
+
 bool rewrite_property(Checking& c, Statement*& s) {
     Expression* target = s->target;
     if (target->kind == E::member) {
@@ -376,12 +393,17 @@ bool rewrite_property(Checking& c, Statement*& s) {
             return false;
         if (refuse_member_of_namespace(c, *target)) return true;
         if (!check(c, target->operands[0])) return true;
-    } else if (target->kind != E::name) {
+    } else if (target->kind != E::name || target->variable) {
         return false;
+    }
+    const Routine* getter = find_accessor(c, *target, Accessor::get);
+    if (is_written_through(*s, getter)) {
+        write_through(c, s, *getter->result->type);
+        return true;
     }
     Routine* setter = find_accessor(c, *target, Accessor::set);
     if (!setter) {
-        if (!find_accessor(c, *target, Accessor::get)) return false;
+        if (!getter) return false;
         c.fail(code::cannot_be_assigned, target->place,
                fmt::format("the property '{}' has no SET", target->token.text), "it is only read");
         return true;
@@ -389,7 +411,7 @@ bool rewrite_property(Checking& c, Statement*& s) {
     if (!is_accessible(c, setter->pou->access, *setter->owner, target->token)) return true;
     const Expression& receiver = receiver_of(c, *target);
     Expression* value = s->value;
-    if (s->op != Word::assign)
+    if (s->op != Word::assign && s->op != Word::reference_assign)
         value =
             make_binary(c, s->place, s->place, operator_of(s->op), make_copy(c, *target), value);
     Expression* call = make_call(c, *target, target, {{.value = value}});

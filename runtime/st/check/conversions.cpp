@@ -109,9 +109,12 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
 bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
-        const bool fits = std::ranges::all_of(from.numbers, [&](std::int64_t number) {
+        const auto holds = [&](std::int64_t number) {
             return number >= smallest(to) && number <= largest(to);
-        });
+        };
+        const bool fits = is_constant(*e)
+                              ? holds(from.numbers[static_cast<std::size_t>(e->constant.integer)])
+                              : std::ranges::all_of(from.numbers, holds);
         if (fits) convert(c, e, to);
         return fits;
     }
@@ -167,6 +170,12 @@ bool coerce_to_catalog(Checking& c, Expression*& e, const Type& to) {
     }
     return from.values.size() <= to.values.size() &&
            std::equal(from.values.begin(), from.values.end(), to.values.begin(), is_short_for);
+}
+
+/// The one structure is the other's base, or a base of that.
+bool is_of_base(const Type& from, const Type& to) {
+    const Type* base = from.kind == Kind::structure ? from.base : nullptr;
+    return base && to.kind == Kind::structure && (same_type(*base, to) || is_of_base(*base, to));
 }
 
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
@@ -361,6 +370,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
         from.values == to.values)
         return true;
+    if (is_of_base(from, to) && become_base(c, e, to)) return true;
     if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});
     const bool is_time = e->place.dialect().dint_is_time && is_time_of_number(from.plain(), to);
     const bool is_truth = from.kind == Kind::boolean && e->place.dialect().bool_is_number &&
@@ -438,6 +448,14 @@ bool make_concrete(Checking& c, Expression*& e, const Type& other) {
     return coerce(c, e, whole && value > largest(lint_type) ? ulint_type : lint_type);
 }
 
+/// A ULINT and a signed integer: CODESYS takes that for a ULINT.
+static bool mixes_signs_of_64(const Expression& e) {
+    const Type &a = e.operands[0]->type->plain(), &b = e.operands[1]->type->plain();
+    const bool are_integers = a.kind == Kind::integer && b.kind == Kind::integer;
+    return e.place.dialect().is_loose && are_integers && a.is_signed != b.is_signed &&
+           (a.is_unsigned_64() || b.is_unsigned_64());
+}
+
 const Type* unite(Checking& c, Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];
     const Type &a = *left->type, &b = *right->type;
@@ -454,6 +472,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         common = &lint_type;
     } else {
         common = common_type(a, b);
+        if (!common && mixes_signs_of_64(e)) common = &ulint_type;
     }
     const auto real_of = [](const Type& any, const Type& typed) -> const Type* {
         if (any.kind != Kind::any_real || typed.kind != Kind::integer) return nullptr;

@@ -13,8 +13,28 @@ namespace lineshaft::st {
 
 namespace {
 
+/// About so many slots of memory as one takes.
+std::uint64_t slots_of_one(const Type& type) {
+    constexpr std::uint64_t of_any_block = 16, of_a_reference = 3;
+    const auto of_all = [](const auto& variables) {
+        std::uint64_t slots = 0;
+        for (const Variable* variable : variables)
+            if (variable->type) slots += slots_of_one(*variable->type);
+        return slots;
+    };
+    if (type.kind == Kind::array) return type.count() * slots_of_one(*type.element);
+    if (type.kind == Kind::text) return 1 + type.length / 8;
+    if (type.kind == Kind::structure || type.kind == Kind::union_) return of_all(type.members);
+    if (type.kind == Kind::block) return of_any_block + of_all(all_variables(*type.routine));
+    if (type.kind == Kind::standard) return type.standard->size / 8;
+    return type.is_reference() || type.kind == Kind::interface ? of_a_reference : 1;
+}
+
+/// Half a megabyte of a type, at least 64.
 std::int64_t size_of_pool(const Type& type) {
-    return type.is_scalar() ? pool_of_numbers : pool_of_others;
+    constexpr std::uint64_t slots = 1U << 16, fewest = 64;
+    const std::uint64_t one = std::max<std::uint64_t>(slots_of_one(type), 1);
+    return static_cast<std::int64_t>(std::max(slots / one, fewest));
 }
 
 Variable& add_to_statics(Checking& c, const Expression& like, std::string name, const Type& of,
@@ -37,7 +57,7 @@ Checking::Pool& pool_of(Checking& c, const Expression& like, const Type& type) {
     Checking::Pool& made = c.pools.emplace_back();
     made.type = &type;
     made.elements = &add_to_statics(c, like, name, type, size + 1);
-    made.taken = &add_to_statics(c, like, name + " taken", dint_type, size);
+    made.taken = &add_to_statics(c, like, name + " taken", dint_type, size + 1);
     return made;
 }
 
@@ -52,6 +72,14 @@ Expression* element(Checking& c, const Expression& like, Variable& array, Expres
     made->operands[0] = use_of(c, like, array);
     made->arguments.push_back({.value = index});
     return made;
+}
+
+/// As who has a pointer to it names it: what its methods call may lead back here.
+Expression* instance(Checking& c, const Expression& like, Variable& array, Expression* index) {
+    Expression* place = element(c, like, array, index);
+    return array.type->element->kind == Kind::block
+               ? make_target(c, like, make_call(c, "ADR", place), nullptr)
+               : place;
 }
 
 Expression* number(Checking& c, const Expression& like, std::int64_t value) {
@@ -101,7 +129,8 @@ Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, 
     body.push_back(
         make_assignment(c, like.place, at_counter(),
                         element(c, like, *pool.elements, number(c, like, size_of_pool(type)))));
-    construct_one(c, like, *c.routine, type, values, at_counter, body);
+    const auto made = [&] { return instance(c, like, *pool.elements, use_of(c, like, counter)); };
+    construct_one(c, like, *c.routine, type, values, made, body);
     Expression* last = binary(c, like, Word::plus, use_of(c, like, first), count);
     return {make_for(c, like, counter, use_of(c, like, first),
                      binary(c, like, Word::minus, last, number(c, like, 1)), std::move(body))};
@@ -134,9 +163,9 @@ Block end_elements(Checking& c, const Expression& like, Checking::Pool& pool, Va
     const Routine* exit =
         type.kind == Kind::block ? find_in(type.routine->methods, "fb_exit") : nullptr;
     if (!exit) return {};
-    Expression* instance = element(c, like, *pool.elements, use_of(c, like, counter));
+    Expression* ended = instance(c, like, *pool.elements, use_of(c, like, counter));
     Statement* call =
-        make_call_statement(c, make_call(c, like, make_member(c, instance, exit->pou->name.text),
+        make_call_statement(c, make_call(c, like, make_member(c, ended, exit->pou->name.text),
                                          {{.value = make_boolean(c, like, false)}}));
     Expression* behind = binary(c, like, Word::plus, use_of(c, like, first),
                                 element(c, like, *pool.taken, use_of(c, like, first)));
@@ -157,6 +186,7 @@ Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::
     Block body = end_elements(c, like, pool, counter, inner);
     body.push_back(make_call_statement(c, system_call(c, like, "__SYSTEM.__DELETE", "first",
                                                       use_of(c, like, counter), *pool.taken)));
+    body.push_back(make_exit(c, like.place));
     return make_for(c, like, counter, number(c, like, 0),
                     number(c, like, size_of_pool(*pool.type) - 1),
                     {make_if(c, like.place, binary(c, like, Word::and_then_, is_taken, is_it),

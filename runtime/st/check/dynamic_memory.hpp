@@ -14,7 +14,4 @@ bool rewrite_delete(Checking& c, Statement*& s);
 /// When all that is made is known.
 void write_deletions(Checking& c);
 
-/// How many elements of a type there are: of numbers and bytes, of all else.
-inline constexpr std::int64_t pool_of_numbers = 4096, pool_of_others = 64;
-
 }  // namespace lineshaft::st

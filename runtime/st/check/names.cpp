@@ -38,10 +38,37 @@ const Type* unknown_name(Checking& c, const Expression& e) {
     return undeclared(c, e.token, e.place);
 }
 
-Variable* find_in_any_capitals(Checking& c, const Token& token) {
+Variable* find_own(const Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
         if (Variable* variable = find_in(r->names, token.text)) return variable;
+    return nullptr;
+}
+
+/// `list.name` of a name within a list of globals whose variables are named with it from elsewhere.
+std::optional<Token> name_in_own_list(Checking& c, const Token& token) {
+    const DeclarationBlock* own = nullptr;
+    for (const DeclarationBlock& block : c.tree.globals) {
+        if (block.declarations.empty()) continue;
+        const Place& first = block.declarations.front()->name.place;
+        if (first.source == token.place.source && first.begin <= token.place.begin) own = &block;
+    }
+    if (!own) return {};
+    const auto is_it = [&](const Declaration* d) { return same_name(d->name.text, token.text); };
+    const auto has_it = [&](const DeclarationBlock& block) {
+        return block.is_qualified_only && block.list == own->list &&
+               std::ranges::any_of(block.declarations, is_it);
+    };
+    if (std::ranges::none_of(c.tree.globals, has_it)) return {};
+    Token full = token;
+    full.text = c.checked.names.emplace_back(fmt::format("{}.{}", own->list, token.text));
+    return full;
+}
+
+Variable* find_in_any_capitals(Checking& c, const Token& token) {
+    if (Variable* own = find_own(c, token)) return own;
     if (token.local) return nullptr;
+    if (const auto full = c.routine ? std::nullopt : name_in_own_list(c, token))
+        if (Variable* own = find_in_any_capitals(c, *full)) return own;
     if (!is_prelude(token)) {
         if (Variable* global = c.find_inside_out(c.globals, token)) return global;
         if (auto* constant = c.find_inside_out(c.constants, token))
@@ -79,6 +106,18 @@ Variable* find_variable(Checking& c, const Token& token) {
     const auto exact = c.by_capitals.find({found->of, token.text});
     if (exact != c.by_capitals.end()) return exact->second;
     return is_exactly_a_value(c, token) ? nullptr : found;
+}
+
+const Routine* block_with_method(const Checking& c, const Token& token) {
+    const Variable* own = find_own(c, token);
+    if (own && own->type && own->type->is_instance()) return nullptr;
+    for (const Routine* r = c.routine; r; r = r->owner)
+        if (r->methods.contains(token.text)) return r;
+    return nullptr;
+}
+
+bool is_own_variable(const Checking& c, const Token& token) {
+    return find_own(c, token) != nullptr;
 }
 
 bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test) {
@@ -202,8 +241,9 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
                        ? refuse_alone(c, *e, *expected)
                        : become_value(c, e, *expected, value - expected->values.data());
     }
-    Variable* variable = is_text ? nullptr : find_variable(c, token);
-    if (!variable) variable = declare_program(c, token);
+    Routine* getter = find_accessor(c, *e, Accessor::get);
+    Variable* variable = is_text || getter ? nullptr : find_variable(c, token);
+    if (!variable && !getter) variable = declare_program(c, token);
     const bool is_due = (expected && expected->kind == Kind::text) || !may_be_name(token.text);
     const bool may_be_text =
         !variable && is_due && token.quoted && e->place.dialect().quotes_may_enclose_texts;
@@ -214,7 +254,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (variable && is_ambiguous(c, token, *variable)) return nullptr;
     if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
-    if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
+    if (getter) return check_getter(c, e, *getter);
     if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
         return become(c, e, *expected, {});
     if (same_name(token.text, "true") || same_name(token.text, "false"))

@@ -6,6 +6,11 @@ namespace lineshaft::st {
 
 /// In the routine, then in its block, then among the globals; null if there is none.
 Variable* find_variable(Checking& c, const Token& token);
+/// Of the routine or its block, which hides what stands beside them.
+bool is_own_variable(const Checking& c, const Token& token);
+/// The block at hand, where it has a method of that name, which hides functions, programs and
+/// global variables. Null: it has none, or an instance of its own is called so.
+const Routine* block_with_method(const Checking& c, const Token& token);
 /// Adds it, or tells that it is declared twice.
 bool is_new_name(Checking& c, Token name, NameMap<Place>& names, bool is_test = false);
 /// B&R's own libraries have such: the first one is meant by both, which is told.

@@ -1,5 +1,6 @@
 #include "runtime/st/check/namespaces.hpp"
 
+#include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -57,6 +58,7 @@ const Expression* root_of(Checking& c, const Expression& member) {
     while (root->kind == E::member) root = root->operands[0];
     if (root->kind != E::name || root->token.local || root->token.quoted || root->type)
         return nullptr;
+    if (is_own_instance(c, *root) || find_accessor(c, *root, Accessor::get)) return nullptr;
     const Variable* variable = find_variable(c, root->token);
     const bool is_free = !variable || (is_library(variable->name) && !is_library(root->token));
     return is_free ? root : nullptr;

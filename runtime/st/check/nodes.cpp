@@ -173,6 +173,10 @@ Statement* make_if(Checking& c, Place place, Expression* condition, Block then, 
                     .body = std::move(otherwise)});
 }
 
+Statement* make_exit(Checking& c, Place place) {
+    return keep(c, {.kind = S::exit, .place = place});
+}
+
 Statement* make_sequence(Checking& c, Place place, Block statements) {
     return keep(c, {.kind = S::sequence, .place = place, .body = std::move(statements)});
 }

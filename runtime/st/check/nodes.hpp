@@ -66,6 +66,7 @@ Statement* make_with(Checking& c, const Statement& s, Expression* value);
 Statement* make_call_statement(Checking& c, Expression* call);
 /// `IF condition THEN then ELSE otherwise END_IF`
 Statement* make_if(Checking& c, Place place, Expression* condition, Block then, Block otherwise);
+Statement* make_exit(Checking& c, Place place);
 /// One behind the other.
 Statement* make_sequence(Checking& c, Place place, Block statements);
 

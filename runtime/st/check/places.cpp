@@ -72,6 +72,25 @@ const Type* check_named_bit(Checking& c, Expression*& e, const Type& type) {
     return &bool_type;
 }
 
+/// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
+/// list.
+bool refuse_of_list(Checking& c, const Expression& e) {
+    const Expression& list = *e.operands[0];
+    if (list.kind != E::name || list.token.local || list.type || find_variable(c, list.token))
+        return false;
+    std::vector<std::string> names;
+    for (const DeclarationBlock& block : c.tree.globals)
+        if (!block.list.empty() && same_name(block.list, list.token.text))
+            for (const Declaration* declared : block.declarations)
+                names.emplace_back(declared->name.text);
+    if (names.empty() || c.find_routine(list.token) || c.look_up(&Names::types, list.token))
+        return false;
+    c.fail(code::not_declared, e.token.place,
+           fmt::format("the list '{}' has no '{}'", list.token.text, e.token.text),
+           suggest(e.token.text, names));
+    return true;
+}
+
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
@@ -83,7 +102,7 @@ const Type* check_member(Checking& c, Expression*& e) {
         return check_value(c, e, *enumeration, e->token);
     if (is_object_of(c, *e))
         use_object(c, e->operands[0], *object_type(c, *standard_type(c, technology_object)));
-    if (refuse_member_of_namespace(c, *e)) return nullptr;
+    if (refuse_member_of_namespace(c, *e) || refuse_of_list(c, *e)) return nullptr;
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);

@@ -4,6 +4,8 @@
 
 namespace lineshaft::st {
 
+/// REFERENCE TO, REF_TO or POINTER TO that type.
+Type& make_reference(Checking& c, Referring referring, const Type* target);
 /// POINTER TO that type.
 const Type& pointer_to(Checking& c, const Type& target);
 
@@ -16,6 +18,10 @@ void resolve_targets(Checking& c);
 /// `e`, a variable, becomes where it is, as a reference of that type; false for what is no
 /// variable, which was told.
 bool refer(Checking& c, Expression*& e, const Type& to);
+
+/// `e`, a variable of a structure that extends `base`, becomes the part of it that is that. False:
+/// it is no variable.
+bool become_base(Checking& c, Expression*& e, const Type& base);
 
 /// `p^`
 const Type* check_target_of(Checking& c, Expression& e);
@@ -34,6 +40,8 @@ void check_attempt(Checking& c, Statement& s);
 /// type; false: an argument is wrong, which was told.
 bool take_query(Checking& c, Expression*& e, const Routine& called);
 
+/// What is written left of REF=, and where else a REFERENCE TO means itself.
+Expression*& without_alias(Expression*& e);
 /// `r REF= x;`
 void check_reference_assignment(Checking& c, Statement& s);
 /// `e`, what a REFERENCE TO refers to, stands for where that is beside `other`, an address, as B&R
@@ -43,11 +51,14 @@ bool means_address(const Expression& e, const Expression& other);
 void take_addresses(Checking& c, Expression& e);
 /// Where the target of an assignment does.
 void assign_address(Checking& c, Statement& s);
-/// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
-std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);
 /// One of both is a reference: comparisons, and what is reckoned with a POINTER.
 const Type* check_reference_operator(Checking& c, Expression*& e, const Type* expected);
 /// As coerce(), where one of both types is that of a reference.
 bool coerce_reference(Checking& c, Expression*& e, const Type& to);
+
+// reference_calls.cpp
+
+/// ADR, REF, SIZEOF, __ISVALIDREF; __NEW and __DELETE, which are refused. Empty: none of them.
+std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type* expected);
 
 }  // namespace lineshaft::st

@@ -242,8 +242,29 @@ bool narrows(Checking& c, Expression*& first, const Type& type) {
     return convert(c, first, type);
 }
 
-void check_for(Checking& c, Statement& s) {
-    const Type* type = check(c, s.target);
+/// Over the values of an enumeration: `FOR number := first TO last DO target := number; ...`. One
+/// that no value has is the fault of that assignment.
+void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
+    Variable& number = c.make_variable(*c.routine, slot->target->token, "FOR", &lint_type);
+    Statement* loop = make_with(c, *slot, slot->value);
+    loop->limit = slot->limit;
+    loop->step = slot->step;
+    for (Expression** bound : {&loop->value, &loop->limit})
+        if (check(c, *bound, &type)) enumeration_becomes_number(c, *bound);
+    loop->target = make_use(c, *slot->target, number);
+    loop->body = {
+        make_assignment(c, slot->target->place, slot->target, make_use(c, *slot->target, number))};
+    loop->body.insert(loop->body.end(), slot->body.begin(), slot->body.end());
+    slot = loop;
+}
+
+void check_for(Checking& c, Statement*& slot) {
+    const Type* type = check(c, slot->target);
+    if (type && type->has_numbers && slot->place.dialect().enumerations_are_numbers) {
+        rewrite_for_of_values(c, slot, *type);
+        type = check(c, slot->target);
+    }
+    Statement& s = *slot;
     if (type && type->kind != Kind::integer && type->kind != Kind::bits) {
         c.fail(code::type_does_not_fit, s.target->place,
                fmt::format("FOR counts in an integer, not in {}", describe(*type)),
@@ -337,7 +358,7 @@ void check(Checking& c, Statement*& slot) {
         case S::case_:
             return check_case(c, slot);
         case S::for_:
-            return check_for(c, s);
+            return check_for(c, slot);
         case S::while_:
         case S::repeat:
             check_condition(c, s.value, s.kind == S::while_ ? "WHILE" : "UNTIL");
@@ -368,9 +389,9 @@ void check(Checking& c, Statement*& slot) {
 }
 
 void check_assignment(Checking& c, Statement*& s) {
-    if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s)) return;
+    if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type)
         s = make_assignment(

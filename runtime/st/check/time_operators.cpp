@@ -53,6 +53,7 @@ const Type* check_time_arithmetic(Checking& c, Expression*& e) {
     const bool both = left->type->kind == Kind::time && right->type->kind == Kind::time;
     const bool adds = op == Word::plus || op == Word::minus || op == Word::mod_;
     Expression*& number = left->type->kind == Kind::time ? right : left;
+    if (!both) become_number(c, number);
     const bool scales = !both && number->type->is_number() &&
                         (op == Word::times || (op == Word::divided && &number == &right));
     if (!(both && adds) && !scales)

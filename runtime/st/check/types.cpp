@@ -67,6 +67,7 @@ void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& n
         return void(c.fail(code::type_does_not_fit, name.place,
                            fmt::format("{} is not a structure", describe(*base)),
                            "a structure extends another one"));
+    to.base = base;
     for (const Variable* member : base->members) {
         names.emplace(member->text, member->name.place);
         to.members.push_back(&c.checked.variables.emplace_back(*member));

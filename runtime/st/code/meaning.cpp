@@ -20,9 +20,9 @@ std::uint64_t piece_of(const std::byte* reference) {
     return word(reference, 1) >> 32;
 }
 
-auto parts_of(const std::byte* reference) {
-    return std::tuple(word(reference, 0), piece_of(reference), bytes_from_first(reference),
-                      word(reference, 2));
+/// Whatever it is called: THIS of an instance is where the variable is that has it.
+auto where(const std::byte* reference) {
+    return std::pair(word(reference, 0), bytes_from_first(reference));
 }
 
 /// A record of a call that recurs ends with so many slots, of which the first has an address.
@@ -69,7 +69,7 @@ bool move_reference(std::byte* to, const std::byte* from, std::int64_t by) {
 }
 
 std::int64_t compare_references(const std::byte* a, const std::byte* b) {
-    const auto order = parts_of(a) <=> parts_of(b);
+    const auto order = where(a) <=> where(b);
     return order < 0 ? -1 : order > 0;
 }
 

@@ -156,6 +156,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         if (global.name == image_name) fill_process_image(w, image);
         w.images[global.type] = std::move(image);
     }
+    fill_paths(w);
     finish_images(w);
     finish_shapes(w);
     finish_recursion(w);

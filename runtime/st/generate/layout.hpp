@@ -51,6 +51,12 @@ void fill_data_block(Writing& w, Writing::Image& image, const Global& global);
 /// All images that instructions use go into the code, once each.
 void finish_images(Writing& w);
 
+// instance_paths.cpp
+
+/// What has `{attribute 'instance-path'}` says where its instance is, of a program or a list of
+/// globals: `Project.MAIN.cell.valves[2]`, in CODESYS' own files `Device.Application.PLC_PRG.cell`.
+void fill_paths(Writing& w);
+
 // dispatch.cpp
 
 /// Levels of calls that an instance has room for beyond those that are known.

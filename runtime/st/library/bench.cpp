@@ -123,19 +123,20 @@ TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
             true, place.calls};
 }
 
-void Bench::advance(std::int64_t by) {
+void Bench::advance() {
     constexpr std::int64_t step = 1'000'000;
-    for (std::int64_t left = by; left > 0; left -= step) {
-        now_.interval = std::min(step, left);
-        now_.time += now_.interval;
-        ++now_.index;
+    for (std::int64_t left = now_.interval; left > 0; left -= step) {
+        now_of_objects_.interval = std::min(step, left);
+        now_of_objects_.time += now_of_objects_.interval;
+        ++now_of_objects_.index;
         for (const auto& [type, block] : objects_) {
             Context inner = context_;
             inner.kind = type->context;
-            type->scan_blocks(block, 1, now_, inner);
+            type->scan_blocks(block, 1, now_of_objects_, inner);
         }
     }
-    now_.interval = by;
+    now_.time += now_.interval;
+    ++now_.index;
 }
 
 std::optional<Mark> Bench::cut() {

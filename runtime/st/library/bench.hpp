@@ -33,8 +33,10 @@ class Bench : Witness {
     /// Executes a routine on an instance: the unit's, or one that it, or a data block, has. A fault
     /// is a failure; so is an assertion that ended it.
     TestResult run(const CodeRoutine& routine, std::byte* instance);
+    /// Of the task that runs the unit [ns]; 1 ms else.
+    void set_cycle(std::int64_t cycle) { now_.interval = cycle; }
     /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.
-    void advance(std::int64_t by);
+    void advance();
 
     std::byte* unit() { return unit_; }
     std::byte* global(std::size_t number) { return places_[number]; }
@@ -66,6 +68,7 @@ class Bench : Witness {
     Context context_;
     std::vector<std::pair<const BlockType*, std::byte*>> objects_;
     Scan now_{0, 1'000'000, 0};
+    Scan now_of_objects_{};
     std::byte* root_ = nullptr;  ///< the instance that runs
     std::uint64_t frame_ = 0;    ///< address of the one with the last assertion that did not hold
     TestResult ended_;           ///< by the last one

@@ -85,30 +85,57 @@ class Suites {
               [this](TestResult result) { return tell(std::move(result)); }, kept) {
         add_suites(program.name, *program.type, -1, 0);
         for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
-            for (const Variable* member : made.checked.globals[i].type->members)
-                if (member->type)
-                    add_suites(std::string(member->text), *member->type, static_cast<int>(i),
-                               member->slot);
+            add_global(made.checked.globals[i], static_cast<int>(i));
+    }
+
+    /// Each is scanned behind the program.
+    void add_programs(std::span<const std::string> names) {
+        for (const std::string& name : names) {
+            const auto is_it = [&](const Global& global) {
+                return is_program(global) && same_name(global.name, name);
+            };
+            const auto found = std::ranges::find_if(made_.checked.globals, is_it);
+            if (found != made_.checked.globals.end())
+                beside_.emplace_back(found->type->routine, found - made_.checked.globals.begin());
+        }
     }
 
     std::vector<SuiteTest> run(std::int64_t cycle) {
+        bench_.set_cycle(cycle);
         for (std::int64_t number = 0; bench_.time() < longest && !is_interrupted(); ++number) {
             set("cycle", number);
             set("suite", 0);
-            const TestResult result = bench_.run(code_of(program_), bench_.unit());
-            if (!result.failure.empty()) {
-                fault_ = result;
-                break;
-            }
+            fault_ = scan_programs();
+            if (!fault_.failure.empty()) break;
             if (get("run_mode") > 0) call_suites();
             if (std::ranges::all_of(suites_, &Suite::is_done)) break;
-            bench_.advance(cycle);
+            bench_.advance();
         }
         return results();
     }
 
   private:
+    TestResult scan_programs() {
+        TestResult result = bench_.run(code_of(program_), bench_.unit());
+        for (const auto& [program, global] : beside_)
+            if (result.failure.empty())
+                result =
+                    bench_.run(code_of(*program), bench_.global(static_cast<std::size_t>(global)));
+        return result;
+    }
+
     bool is_interrupted() const { return watch_.interrupt && *watch_.interrupt; }
+
+    /// A list of variables, or another program.
+    void add_global(const Global& global, int number) {
+        if (is_program(global)) {
+            if (global.type != program_.type) add_suites(global.name, *global.type, number, 0);
+            return;
+        }
+        for (const Variable* member : global.type->members)
+            if (member->type)
+                add_suites(std::string(member->text), *member->type, number, member->slot);
+    }
 
     void add_suites(const std::string& name, const Type& type, int global, std::size_t slot) {
         if (type.kind == Type::Kind::array && !type.element->is_scalar())
@@ -253,11 +280,24 @@ class Suites {
     const Routine& program_;
     const SuitesWatch& watch_;
     Bench bench_;
+    std::vector<std::pair<const Routine*, std::ptrdiff_t>>
+        beside_;  ///< programs, and their globals
     std::vector<Suite> suites_;
     std::map<std::int64_t, TestResult> failed_;               ///< the first of each test
     std::vector<std::pair<std::size_t, TestResult>> faults_;  ///< of suites without a test that ran
     TestResult fault_;                                        ///< of the program
 };
+
+/// Names the programs, so that they are instances.
+std::shared_ptr<const SourceFile> naming(const SourceFile& like,
+                                         std::span<const std::string> programs) {
+    std::string calls;
+    for (const std::string& program : programs) calls += program + "();\n";
+    return std::make_shared<const SourceFile>(
+        SourceFile{.path = like.path,
+                   .text = "PROGRAM __programs_of_tasks\n" + calls + "END_PROGRAM\n",
+                   .part = "programs of tasks"});
+}
 
 bool is_call_of_run(const Cursor& cursor) {
     return (cursor.says("run") || cursor.says("run_in_sequence")) &&
@@ -281,13 +321,15 @@ bool calls_suites(const std::shared_ptr<const SourceFile>& file) {
 std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
-    std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch, const Options& options) {
+    std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch, const Options& options,
+    std::span<const std::string> beside) {
     constexpr std::int64_t more_fuel = 100;  // a test may do in a scan what a machine does in many
     Options own = options;
     own.fuel *= more_fuel;
     Library::Made made;
     made.sources = sources;
     made.sources.push_back(file);
+    if (!beside.empty()) made.sources.push_back(naming(*file, beside));
     if (!compile(made, standard, out)) return {};
     make_native(made.generated.code, own);
     const Routine* program = nullptr;
@@ -304,7 +346,9 @@ std::optional<std::vector<SuiteTest>> run_suites(
         return {};
     }
     const auto kept = kept_references(made, *program, standard);
-    return Suites(made, own, *program, kept, watch).run(cycle);
+    Suites suites(made, own, *program, kept, watch);
+    suites.add_programs(beside);
+    return suites.run(cycle);
 }
 
 }  // namespace lineshaft::st

@@ -22,8 +22,8 @@ struct SuitesWatch {
     std::function<void(const std::string& suite)> at_work = {};  ///< told before each is scanned
 };
 
-/// Scans the PROGRAM of `file` every `cycle` [ns], and behind it the suites of TcUnit that it and
-/// the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
+/// Scans the PROGRAM of `file` every `cycle` [ns], behind it those of `beside`, which tasks run, and
+/// then the suites of TcUnit that they, what they call and the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
 /// other blocks of the lists are scanned every millisecond, as is one for each AXIS_REF that the
 /// program, its blocks or a list keep. A failed assertion does not end its
 /// test; the first one is told. A test that is not finished after ten minutes has failed, as has
@@ -33,6 +33,6 @@ std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,
     std::int64_t cycle, Diagnostics& out, const SuitesWatch& watch = {},
-    const Options& options = {});
+    const Options& options = {}, std::span<const std::string> beside = {});
 
 }  // namespace lineshaft::st

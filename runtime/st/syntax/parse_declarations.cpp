@@ -171,9 +171,10 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     if (p.panic) return skip_declaration(p);
     const auto [unit, place] = unit_between(p, first, p.at);
     const std::string_view doc = comment_before(p, p.at, false);
+    const bool is_path = has_attribute(p, first, "instance-path");
     for (const Token& name : names)
         to.push_back(&p.tree.declarations.emplace_back(
-            Declaration{name, type, initial, at, edge, unit, place, doc}));
+            Declaration{name, type, initial, at, edge, unit, place, doc, is_path}));
 }
 
 }  // namespace lineshaft::st

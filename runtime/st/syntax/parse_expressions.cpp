@@ -189,8 +189,10 @@ bool takes_type(const Parsing& p, const Expression& function) {
     const auto follows = [&](std::string_view word) { return same_name(p.next().text, word); };
     if (function.kind != Expression::Kind::name) return false;
     const bool is_to = p.next(2).word == Word::to_;
+    const bool has_length = p.next(2).word == Word::open || p.next(2).word == Word::open_bracket;
     const bool is_written = p.next().word == Word::array_ || (follows("pointer") && is_to) ||
-                            (follows("reference") && is_to);
+                            (follows("reference") && is_to) ||
+                            ((follows("string") || follows("wstring")) && has_length);
     return is("__new") || (is_written && (is("sizeof") || is("xsizeof")));
 }
 

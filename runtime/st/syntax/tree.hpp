@@ -222,6 +222,7 @@ struct Declaration {
     std::string_view unit = {};
     Place unit_place = {};
     std::string_view doc = {};  ///< the comments behind it
+    bool is_path = false;       ///< `{attribute 'instance-path'}`: a text that names its instance
 };
 
 enum class Section : std::uint8_t {

@@ -1,0 +1,113 @@
+#include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
+#include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
+#include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/references.hpp"
+#include "runtime/st/check/types.hpp"
+#include "runtime/st/types/packed.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+const Type* check_size(Checking& c, Expression*& e) {
+    if (e->of) {
+        const Type* written = resolve(c, *e->of);
+        if (!written) return nullptr;
+        return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*written)}});
+    }
+    Expression*& of = e->arguments[0].value;
+    const auto qualified = qualified_name(c, *of);
+    const Token name = qualified ? *qualified : of->token;
+    const bool is_type =
+        (qualified || of->kind == E::name) && !find_variable(c, name) && !is_own_instance(c, *of);
+    const Type* type = is_type ? resolve_name(c, name) : check(c, of);
+    if (!type) return nullptr;
+    return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
+}
+
+/// `ADR(text[i])` of bytes, a POINTER TO BYTE: so many behind the first one.
+const Type* refer_to_byte(Checking& c, Expression*& e, Expression& byte) {
+    Expression* first = byte.operands[0];
+    Type& to_text = make_reference(c, Referring::pointer, first->type);
+    if (!refer(c, first, to_text)) return nullptr;
+    become_converted(c, first, make_reference(c, Referring::pointer, &bits_type(8)));
+    e = make_binary(c, e->place, e->place, Word::plus, first, byte.arguments[0].value);
+    return check(c, e);
+}
+
+const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
+    Expression* place = e->arguments[0].value;
+    if (!check(c, place)) return nullptr;
+    if (referring == Referring::pointer && place->is_character() &&
+        place->place.dialect().texts_are_bytes)
+        return refer_to_byte(c, e, *place);
+    take_place_of_object(c, place);
+    const Type* type = place->type;
+    if (!refer(c, place, make_reference(c, referring, type))) return nullptr;
+    e = place;
+    return e->type;
+}
+
+/// VAR_IN_OUT CONSTANT, which values are given to, too.
+bool is_constant_in_out(const Variable& variable) {
+    if (!variable.of) return false;
+    const auto is_this = [&](const Declaration* declared) {
+        return same_name(declared->name.text, variable.text);
+    };
+    return std::ranges::any_of(variable.of->blocks, [&](const DeclarationBlock& block) {
+        return block.section == Section::in_out && block.constant &&
+               std::ranges::any_of(block.declarations, is_this);
+    });
+}
+
+const Type* check_is_bound(Checking& c, Expression*& e) {
+    Expression*& given = e->arguments[0].value;
+    if (!check(c, given)) return nullptr;
+    if (given->kind == E::name && given->variable && is_constant_in_out(*given->variable))
+        return become(c, e, bool_type, {.integer = 1});
+    if (given->type->kind == Kind::interface) {
+        e = make_binary(c, e->place, e->token.place, Word::unequal, given,
+                        make_constant(c, *given, null_type, {}));
+        return check(c, e);
+    }
+    Expression* reference = without_alias(given);
+    const bool is_own = given->kind == E::member && given->operands[0]->kind == E::self;
+    const Variable* in_out = given->kind == E::name || is_own ? given->variable : nullptr;
+    if (in_out && in_out->space == Space::reference && !reference->type->is_reference()) {
+        if (!refer(c, given, make_reference(c, Referring::ref, given->type))) return nullptr;
+        reference = given;
+    }
+    if (!reference->type->is_reference())
+        return c.fail(
+            code::type_does_not_fit, given->place,
+            fmt::format("__ISVALIDREF takes a reference, not {}", describe(*given->type)));
+    e = make_binary(c, e->place, e->token.place, Word::unequal, reference,
+                    make_constant(c, *reference, *reference->type, {}));
+    return e->type = &bool_type;
+}
+
+}  // namespace
+
+std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, const Type*) {
+    const Token& name = e->operands[0]->token;
+    const auto is = [&](std::string_view known) { return same_name(name.text, known); };
+    if (is_of_dynamic_memory(name.text))
+        return c.fail(
+            code::wrong_place, name.place,
+            fmt::format("{} stands in a statement of its own", name.text),
+            is("__new") ? "assign it: pointer := __NEW(Type);" : "write '__DELETE(pointer);'");
+    const bool is_known =
+        is("adr") || is("ref") || is("sizeof") || is("xsizeof") || is("__isvalidref");
+    if (!is_known) return {};
+    if (!e->of && (e->arguments.size() != 1 || e->arguments[0].is_output))
+        return c.fail(code::wrong_arguments, name.place,
+                      fmt::format("{} takes 1 argument", name.text));
+    if (is("sizeof") || is("xsizeof")) return check_size(c, e);
+    if (is("__isvalidref")) return check_is_bound(c, e);
+    return check_refer(c, e, is("adr") ? Referring::pointer : Referring::ref);
+}
+
+}  // namespace lineshaft::st
