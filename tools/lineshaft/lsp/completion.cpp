@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "blocks/catalog.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
@@ -235,8 +237,27 @@ std::size_t without_blanks(const std::string& text, std::size_t end) {
     return end;
 }
 
+/// Where nothing is named.
+bool is_in_comment_or_text(const Asked& where) {
+    Diagnostics untold;
+    const auto before = std::make_shared<SourceFile>(
+        SourceFile{.path = where.path, .text = where.text.substr(0, where.offset)});
+    const std::string_view text = before->text;
+    const st::Tokens all = st::read_tokens(before, untold);
+    const auto is_open = [&](std::size_t begin) {
+        const std::string_view rest = text.substr(begin);
+        return rest.starts_with("(*") || rest.starts_with("/*") ||
+               (rest.starts_with('\'') && rest.find('\n') == rest.npos);
+    };
+    return std::ranges::any_of(all.mistakes, is_open) ||
+           std::ranges::any_of(all.comments, [&](const st::Pragma& comment) {
+               return comment.place.end == text.size() && comment.place.text().starts_with("//");
+           });
+}
+
 Json complete_structured_text(Session& session, const Asked& where) {
     Offer offer;
+    if (is_in_comment_or_text(where)) return offer.take();
     const auto meaning = whole_meaning_of(session, session.project.roots_of(where.path).front());
     const Completion at{*meaning, meaning->routine_at(where)};
     std::size_t begin = where.offset;
@@ -269,6 +290,17 @@ std::optional<Signature> signature_at(const Completion& at, const std::vector<st
     if (const st::Routine* called = at.routine_of(chain)) {
         Signature made{signature_of(*called), {}};
         for (const st::Variable* v : parameters_of(*called)) made.parameters.emplace_back(v->text);
+        return made;
+    }
+    if (const st::Type* type = at.type_of(chain); type && type->kind == st::Type::Kind::standard) {
+        Signature made;
+        for (const st::Variable* v : type->members) {
+            if (v->section == st::Section::local) continue;
+            made.label += fmt::format("{}{} : {}", made.label.empty() ? "" : "; ", v->text,
+                                      v->type ? st::describe(*v->type) : "?");
+            made.parameters.emplace_back(v->text);
+        }
+        made.label = fmt::format("FUNCTION_BLOCK {}({})", type->name, made.label);
         return made;
     }
     const auto* f = chain.size() == 1 ? st::find_standard_function(chain[0]) : nullptr;

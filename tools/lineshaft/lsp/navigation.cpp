@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -9,6 +10,7 @@
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/functions/standard.hpp"
+#include "runtime/st/types/elementary.hpp"
 #include "tools/lineshaft/lsp/meanings.hpp"
 #include "tools/lineshaft/lsp/requests.hpp"
 #include "tools/lineshaft/lsp/yaml_places.hpp"
@@ -178,22 +180,46 @@ void add_in_yaml(Session& session, const std::string& root, const Meaning& meani
         NamesInYaml(file, wanted, to).find(read_program(file, {}, untold), meaning);
 }
 
-std::set<Reference> references_to(Session& session, const st::NameUse& wanted) {
+std::set<Reference> references_to(Session& session, const st::Place& declared) {
     std::set<Reference> found;
-    const std::string name(wanted.declared.text());
+    const std::string name(declared.text());
     for (const std::string& root :
-         session.project.roots_to_look_in(wanted.declared.source->file->path, name)) {
+         session.project.roots_to_look_in(declared.source->file->path, name)) {
         const auto meaning = meaning_of(session, root);
         bool is_there = false;
         for (const st::NameUse& use : meaning->uses)
-            if (is_same(use.declared, wanted.declared)) {
+            if (is_same(use.declared, declared)) {
                 is_there = true;
                 found.insert({use.at.mark(), std::string(use.at.text())});
             }
         if (is_there && !is_structured_text(root))
-            add_in_yaml(session, root, *meaning, wanted.declared, found);
+            add_in_yaml(session, root, *meaning, declared, found);
     }
     return found;
+}
+
+/// A method, and all that it replaces or implements, or that does so with it.
+std::vector<st::Place> family_of(const Meaning& meaning, const st::NameUse& use) {
+    std::vector<st::Place> places{use.declared};
+    if (!use.routine || !use.routine->owner) return places;
+    const std::string_view name = use.declared.text();
+    const auto& routines = meaning.compiled.checked.routines;
+    std::set<const st::Routine*> owners{use.routine->owner};
+    for (std::size_t known = 0; known != owners.size();) {
+        known = owners.size();
+        for (const st::Routine& block : routines)
+            if (st::find_in(block.methods, name) &&
+                std::ranges::any_of(owners, [&](const st::Routine* owner) {
+                    return st::is_a(block, *owner) || st::is_a(*owner, block);
+                }))
+                owners.insert(&block);
+    }
+    for (const st::Routine* owner : owners)
+        for (const st::Routine* method : owner->own_methods)
+            if (const st::Place& place = method->pou->name.place;
+                st::same_name(method->pou->name.text, name) && !is_same(place, use.declared))
+                places.push_back(place);
+    return places;
 }
 
 std::string about_function(const Asked& where) {
@@ -214,12 +240,34 @@ bool can_be_changed(const Found& found) {
     return found.use->declared.source->is_users() && !(type && type->is_object());
 }
 
+/// As the language of the file has names.
+bool is_name(const std::string& name, const SourceFile& file) {
+    Diagnostics wrong;
+    const auto alone = std::make_shared<SourceFile>(
+        SourceFile{.path = file.path, .text = name, .read_as = file.read_as});
+    const auto tokens = st::read_tokens(alone, wrong).tokens;
+    const bool is_one = wrong.empty() && tokens.size() == 2 && tokens[0].word == st::Word::name &&
+                        tokens[0].text == name;
+    const auto is_value = [&](const char* value) { return st::same_name(value, name); };
+    return is_one && !st::find_elementary(name) &&
+           std::ranges::none_of(std::array{"TRUE", "FALSE", "NULL", "THIS", "SUPER"}, is_value);
+}
+
 /// A name that stands somewhere already would mean both.
 bool is_taken(const Meaning& meaning, const std::string& name) {
     return st::find_standard_function(name) || standard_blocks().find(name) ||
            std::ranges::any_of(meaning.uses, [&](const st::NameUse& use) {
                return st::same_name(use.at.text(), name);
            });
+}
+
+/// What stands in a block with a mistake means nothing yet, and would be left as it is.
+void refuse_where_lost(Session& session, const std::string& path, const std::string& name) {
+    for (const std::string& root : session.project.roots_to_look_in(path, name))
+        if (meaning_of(session, root)->compiled.tree.lost.contains(name))
+            throw RefusedName{
+                fmt::format("'{}' stands in a block that has a mistake ({}); correct that first",
+                            name, std::filesystem::path(root).filename().string())};
 }
 
 }  // namespace
@@ -256,7 +304,7 @@ Json references(Session& session, const Json& params) {
         params.value(Json::json_pointer("/context/includeDeclaration"), true);
     const Mark declared = found.use->declared.mark();
     Json list = Json::array();
-    for (const Reference& reference : references_to(session, *found.use)) {
+    for (const Reference& reference : references_to(session, found.use->declared)) {
         const Mark& mark = reference.mark;
         const bool is_declaration = mark.file->path == declared.file->path &&
                                     mark.line == declared.line && mark.column == declared.column;
@@ -279,10 +327,17 @@ Json rename(Session& session, const Json& params) {
     const std::string name = params.at("newName").get<std::string>();
     const Found found = where ? find_anywhere(session, *where) : Found();
     if (!can_be_changed(found)) throw RefusedName{"what stands here has no name of yours"};
-    if (!is_identifier(name)) throw RefusedName{fmt::format("'{}' is not a name", name)};
-    if (is_taken(*found.meaning, name)) throw RefusedName{fmt::format("there is a '{}'", name)};
+    const SourceFile& file = *found.use->declared.source->file;
+    const std::string old(found.use->declared.text());
+    if (!is_name(name, file)) throw RefusedName{fmt::format("'{}' is not a name", name)};
+    if (!st::same_name(name, old) && is_taken(*found.meaning, name))
+        throw RefusedName{fmt::format("there is a '{}'", name)};
+    for (const std::string& each : {old, name}) refuse_where_lost(session, file.path, each);
+    std::set<Reference> references;
+    for (const st::Place& declared : family_of(*found.meaning, *found.use))
+        references.merge(references_to(session, declared));
     Json changes = Json::object();
-    for (const auto& [mark, text] : references_to(session, *found.use)) {
+    for (const auto& [mark, text] : references) {
         const std::string_view before = text.starts_with('#') ? "#" : "";
         const std::string_view quote = text.ends_with('"') ? "\"" : "";
         const Json at = location(session, mark);
