@@ -59,7 +59,7 @@ const Dialect twincat = [] {
 
 const Dialect matiec = [] {
     Dialect made = codesys;
-    made.vendor = Vendor::none;
+    made.vendor = Vendor::matiec;
     made.addresses_of_sizes_are_apart = true;
     made.whole_reals_have_points = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.most_aligned = iec.most_aligned;
