@@ -25,15 +25,15 @@ bool are_counts(std::initializer_list<std::int64_t> numbers) {
 }  // namespace
 
 bool is_valid(const Ctu& counter, const KeptState&) {
-    return are_booleans(counter.last_cu);
+    return are_booleans(counter.last_cu, counter.stops_at_preset);
 }
 
 bool is_valid(const Ctd& counter, const KeptState&) {
-    return are_booleans(counter.last_cd);
+    return are_booleans(counter.last_cd, counter.stops_at_preset);
 }
 
 bool is_valid(const Ctud& counter, const KeptState&) {
-    return are_booleans(counter.last_cu, counter.last_cd);
+    return are_booleans(counter.last_cu, counter.last_cd, counter.stops_at_preset);
 }
 
 bool is_valid(const FilterPt1& filter, const KeptState& machine) {

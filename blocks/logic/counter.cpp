@@ -36,12 +36,16 @@ constexpr Range range(CounterType type) {
     return ranges[static_cast<std::size_t>(type)];
 }
 
-void count_up(std::int64_t& cv, CounterType type) {
-    if (cv < range(type).most) ++cv;
+template <class Counter>
+void count_up(Counter& counter) {
+    const std::int64_t most = range(counter.data_type).most;
+    if (counter.cv < (counter.stops_at_preset ? std::min(counter.pv, most) : most)) ++counter.cv;
 }
 
-void count_down(std::int64_t& cv, CounterType type) {
-    if (cv > range(type).least) --cv;
+template <class Counter>
+void count_down(Counter& counter) {
+    const std::int64_t least = range(counter.data_type).least;
+    if (counter.cv > (counter.stops_at_preset ? 0 : least)) --counter.cv;
 }
 
 std::int64_t preset(std::int64_t pv, CounterType type) {
@@ -57,7 +61,8 @@ std::optional<Misfit> preset_misfit(std::int64_t pv, CounterType type,
                                     type_names[static_cast<std::size_t>(type)], least, most)};
 }
 
-constexpr std::string_view data_type_doc = "type of cv: its limits";
+constexpr std::string_view data_type_doc = "type of cv: its limits",
+                           stops_doc = "counts up to pv and down to 0 at most";
 
 }  // namespace
 
@@ -69,6 +74,7 @@ std::span<const Field> Ctu::fields() {
         input("pv", &Ctu::pv, "", "preset value").must_be_set(),
         output("q", &Ctu::q, "", "cv has reached pv"),
         output("cv", &Ctu::cv, "", "counter value"),
+        local("stops_at_preset", &Ctu::stops_at_preset, "", stops_doc),
     };
     return table;
 }
@@ -82,7 +88,7 @@ void Ctu::scan(const Scan&) {
     if (r)
         cv = 0;
     else if (up)
-        count_up(cv, data_type);
+        count_up(*this);
     q = cv >= pv;
 }
 
@@ -94,6 +100,7 @@ std::span<const Field> Ctd::fields() {
         input("pv", &Ctd::pv, "", "preset value").must_be_set(),
         output("q", &Ctd::q, "", "cv has reached 0"),
         output("cv", &Ctd::cv, "", "counter value"),
+        local("stops_at_preset", &Ctd::stops_at_preset, "", stops_doc),
     };
     return table;
 }
@@ -107,7 +114,7 @@ void Ctd::scan(const Scan&) {
     if (ld)
         cv = preset(pv, data_type);
     else if (down)
-        count_down(cv, data_type);
+        count_down(*this);
     q = cv <= 0;
 }
 
@@ -122,6 +129,7 @@ std::span<const Field> Ctud::fields() {
         output("qu", &Ctud::qu, "", "cv has reached pv"),
         output("qd", &Ctud::qd, "", "cv has reached 0"),
         output("cv", &Ctud::cv, "", "counter value"),
+        local("stops_at_preset", &Ctud::stops_at_preset, "", stops_doc),
     };
     return table;
 }
@@ -138,9 +146,9 @@ void Ctud::scan(const Scan&) {
     else if (ld)
         cv = preset(pv, data_type);
     else if (up && !down)
-        count_up(cv, data_type);
+        count_up(*this);
     else if (down && !up)
-        count_down(cv, data_type);
+        count_down(*this);
     qu = cv >= pv;
     qd = cv <= 0;
 }

@@ -16,6 +16,7 @@ enum class CounterType : std::int64_t { int_, dint, lint, udint, ulint, sint, us
 /// Counters of IEC 61131-3:2013, table 45. They count rising edges of `cu` and `cd`; an input that
 /// is true at the first scan has risen. An edge during reset or load is not counted later. cv stops
 /// at the limits of `data_type`; a pv beyond them is loaded as the limit, and cv never gets there.
+/// With `stops_at_preset`, as in MatIEC, it is counted up to pv and down to 0 at most.
 ///
 /// CTU: r sets cv to 0, else an edge of cu adds 1; q = cv >= pv.
 struct Ctu {
@@ -27,6 +28,7 @@ struct Ctu {
     std::int64_t cv = 0;
 
     bool last_cu = false;
+    bool stops_at_preset = false;
 
     static constexpr std::string_view type = "ctu";
     static constexpr std::string_view doc = "up counter";
@@ -46,6 +48,7 @@ struct Ctd {
     std::int64_t cv = 0;
 
     bool last_cd = false;
+    bool stops_at_preset = false;
 
     static constexpr std::string_view type = "ctd";
     static constexpr std::string_view doc = "down counter";
@@ -66,6 +69,7 @@ struct Ctud {
     std::int64_t cv = 0;
 
     bool last_cu = false, last_cd = false;
+    bool stops_at_preset = false;
 
     static constexpr std::string_view type = "ctud";
     static constexpr std::string_view doc = "up and down counter";

@@ -25,7 +25,7 @@ bool is_timer(const Type& type) {
 
 /// What a function of MatIEC gives where EN is FALSE.
 void assign_initial_value(Checking& c, const Statement& s, Block& to) {
-    if (s.kind != S::assign || &s.place.dialect() != &matiec) return;
+    if (s.kind != S::assign || s.place.dialect().vendor != Vendor::matiec) return;
     Expression* target = s.target;
     const Type* type = check(c, target);
     const bool is_elementary = type && (type->kind <= Kind::time ||

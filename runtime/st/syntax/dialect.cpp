@@ -60,7 +60,7 @@ const Dialect twincat = [] {
 
 const Dialect matiec = [] {
     Dialect made = codesys;
-    made.vendor = Vendor::none;
+    made.vendor = Vendor::matiec;
     made.addresses_of_sizes_are_apart = true;
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.times_count_ms = false;

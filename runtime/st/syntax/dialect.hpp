@@ -6,7 +6,7 @@
 namespace lineshaft::st {
 
 /// Whose blocks of the standard differ from it.
-enum class Vendor : std::uint8_t { none, automation_studio, codesys, siemens };
+enum class Vendor : std::uint8_t { none, automation_studio, codesys, matiec, siemens };
 
 /// What one language of the name Structured Text means where another means something else. A source
 /// has one dialect for good, see Source. All else is read alike in all of them.

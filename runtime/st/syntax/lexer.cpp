@@ -349,7 +349,7 @@ class Lexer {
             return void(add(Word::duration));
         }
         if (!find_called(time_prefixes, text)) return;
-        if (&tokens_.source->dialect == &matiec) {
+        if (tokens_.source->dialect.vendor == Vendor::matiec) {
             skip_while([](char c) { return c == ' ' || c == '\t'; });
             start_ = at_;
         }

@@ -94,6 +94,17 @@ constexpr Beginning of_codesys[] = {{"ctu", "data_type", 7},
 /// Its CTUD counts in INT.
 constexpr Beginning of_automation_studio[] = {{"ctu", "data_type", 7}, {"ctd", "data_type", 7}};
 
+/// Its counters stop where the standard's program text of them does.
+constexpr Beginning of_matiec[] = {
+    {"ctu", "stops_at_preset", 1},       {"ctd", "stops_at_preset", 1},
+    {"ctud", "stops_at_preset", 1},      {"ctu_dint", "stops_at_preset", 1},
+    {"ctd_dint", "stops_at_preset", 1},  {"ctud_dint", "stops_at_preset", 1},
+    {"ctu_lint", "stops_at_preset", 1},  {"ctd_lint", "stops_at_preset", 1},
+    {"ctud_lint", "stops_at_preset", 1}, {"ctu_udint", "stops_at_preset", 1},
+    {"ctd_udint", "stops_at_preset", 1}, {"ctud_udint", "stops_at_preset", 1},
+    {"ctu_ulint", "stops_at_preset", 1}, {"ctd_ulint", "stops_at_preset", 1},
+    {"ctud_ulint", "stops_at_preset", 1}};
+
 std::span<const Beginning> beginnings_of(Vendor vendor) {
     switch (vendor) {
         case Vendor::siemens:
@@ -102,6 +113,8 @@ std::span<const Beginning> beginnings_of(Vendor vendor) {
             return of_codesys;
         case Vendor::automation_studio:
             return of_automation_studio;
+        case Vendor::matiec:
+            return of_matiec;
         case Vendor::none:
             break;
     }
