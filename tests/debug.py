@@ -158,7 +158,7 @@ def test_back_and_forth():
 def test_conditions():
     client = Client(lineshaft)
     count = line("count := count + 1;")
-    client.launch(program, {motor: [{"line": count, "condition": "count >= 7 AND mode = running"}]})
+    client.launch(program, {motor: [{"line": count, "condition": "count >= 7 AND mode = Mode#running"}]})
     client.event("stopped")
     assert client.value("Outputs", "count", 2) == "7"
     client.breakpoints(motor, {"line": count, "hitCondition": "% 5"})
@@ -205,7 +205,7 @@ def test_watches():
     for text, wanted in (("count", "6"), ("count + 2 * 3", "12"), ("speed > 2.0", "TRUE"), ("ramp.steps", "6"),
                          ("table[2] = 12", "TRUE"), ("mode", "Mode#running"), ("mode = Mode#idle", "FALSE"),
                          ("speed", "3.0 mm/s"), ("NOT (a = b) OR FALSE", "FALSE"), ("count MOD 4", "2"),
-                         ("T#1s + T#500ms", "1500000000"), ("motor.speed", "3 mm/s"), ("inputs.start", "true")):
+                         ("T#1s + T#500ms", "T#1s500ms"), ("motor.speed", "3 mm/s"), ("inputs.start", "true")):
         assert value(text) == wanted, (text, value(text))
     for text, wanted in (("nothing", "not known"), ("table[301]", "index"), ("count / 0", "zero"), ("Clamp(1.0, 2.0)", "changes"),
                          ("count :=", "expected"), ("1; 2", "statement"), ("1; count", "one expression")):
@@ -213,6 +213,90 @@ def test_watches():
             raise AssertionError((text, value(text)))
         except Refused as why:
             assert wanted in str(why), (text, why)
+    client.end()
+
+
+def parts():
+    """A program with blocks in blocks, of which one waits at its last statement."""
+    path = folder / "parts.yaml"
+    path.write_text("lineshaft: 1\ntasks: {t: {every: 10 ms}}\nsources: parts.st\nblocks: {main: {type: Main, task: t}, other: {type: Main, task: t}}\n"
+                    "run: {for: 0.1 s}\ntrace: {task: t, signals: [main.n]}\n", encoding="utf-8")
+    path.with_suffix(".st").write_text(
+        "TYPE Mode : (off, slow, fast); END_TYPE\n"
+        "FUNCTION_BLOCK Inner\nVAR_INPUT goal : REAL; END_VAR\nVAR_OUTPUT total : INT; END_VAR\nVAR seen : BOOL; END_VAR\n"
+        "total := total + 1;\nseen := TRUE;\nEND_FUNCTION_BLOCK\n"
+        "PROGRAM Main\nVAR b : BOOL; mode : Mode; n : INT; r : REAL := 1.1; tm : TIME := T#1s; day : DATE; w : WORD; long : LREAL;\n"
+        "name : STRING := 'abc'; t : TON; c : Inner; table : ARRAY[1..3] OF INT; END_VAR\n"
+        "n := n + 1;\nt(IN := TRUE, PT := T#20ms);\nc();\nb := NOT b;\nEND_PROGRAM\n", encoding="utf-8")
+    return path, path.with_suffix(".st")
+
+
+def test_watches_as_the_program_reckons():
+    """Types of the language: REAL in its own precision, INT that leaves its range; names of the program and of the catalogue."""
+    path, text = parts()
+    client = Client(lineshaft)
+    client.launch(path, {text: [{"line": 15, "condition": "r = 1.1 AND n >= 3"}]})
+    assert client.event("stopped")["reason"] == "breakpoint"
+    frame = client.stack()[0]["id"]
+
+    def value(text):
+        return client.request("evaluate", expression=text, frameId=frame)["result"]
+
+    for watched, wanted in (("r = 1.1", "TRUE"), ("r + 0.2", "1.3000001"), ("n + INT#32767", "-32766"), ("t.ET", "T#20ms"), ("t.Q", "TRUE"),
+                            ("NOT t.q", "FALSE"), ("other.n > 1", "TRUE"), ("other.r = 1.1", "TRUE"), ("main.t.q = TRUE", "TRUE"),
+                            ("other.mode = Mode#off", "TRUE"), ("mode = off", "TRUE"), ("mode = Mode.off", "TRUE"), ("other.table[2] + 1", "1"),
+                            ("ABS(-3)", "3"), ("LEN(name)", "3"), ("DINT_TO_REAL(7)", "7.0"), ("MAX(n, 40)", "40"),
+                            ("n > 5 AND_THEN table[n] > 0", "FALSE"), ("tm + T#1s", "T#2s"), ("name = 'abc'", "TRUE")):
+        assert value(watched) == wanted, (watched, value(watched))
+    for watched, wanted in (("t.none", "not known"), ("other.none", "not"), ("c = 1", "no value"), ("Mode#none", "no value")):
+        try:
+            raise AssertionError((watched, value(watched)))
+        except Refused as why:
+            assert wanted in str(why), (watched, why)
+    client.end()
+
+
+def test_parts_are_changed():
+    """Whatever is a signal of the program, from each frame, as the view of variables shows its value."""
+    path, text = parts()
+    client = Client(lineshaft)
+    client.launch(path, {text: [7]})
+    client.event("stopped")
+
+    def change(frame, way, name, value):
+        reference = client.scopes(client.stack()[frame]["id"])[way[0]]
+        for step in way[1:]:
+            reference = client.inside(reference)[step]["variablesReference"]
+        evaluated = client.inside(reference)[name]["evaluateName"]
+        log = len(client.events)
+        client.request("setVariable", variablesReference=reference, name=name, value=value)
+        return evaluated, client.events[log:]
+
+    def refused(*what):
+        try:
+            raise AssertionError((what, change(*what)))
+        except Refused as why:
+            return str(why)
+
+    assert change(0, ["Outputs"], "total", "5")[0] == "main.c.total"
+    assert change(0, ["Locals"], "seen", "TRUE")[0] == "main.c.seen"
+    assert change(0, ["Inputs"], "goal", "REAL#1.5")[0] == "main.c.goal"
+    assert change(1, ["Locals", "c", "Outputs"], "total", "16#7F")[0] == "main.c.total"
+    assert change(1, ["Locals", "table"], "[2]", "12")[0] == "main.table[2]"
+    assert change(1, ["Locals", "t"], "et", "T#10ms")[0] == "main.t.et"
+    for name, value in (("b", "FALSE"), ("mode", "Mode#fast"), ("mode", "FAST"), ("tm", "t#2s"), ("tm", "LTIME#2s"), ("tm", "2 s"),
+                        ("day", "D#2024-02-29"), ("w", "WORD#16#00FF"), ("n", "-1_000"), ("long", "LREAL#1.0E3")):
+        assert change(1, ["Locals"], name, value)[0] == f"main.{name}"
+    assert refused(1, ["Locals"], "n", "99999") == "'99999' is out of range for 'main.n'"
+    assert refused(1, ["Locals"], "mode", "77") == "'77' is not a value of 'main.mode'"
+    placed = client.request("setFunctionBreakpoints", breakpoints=[
+        {"name": "main.mode"}, {"name": "main.mode = Mode#fast"}, {"name": "main.n", "condition": "TRUE"}, {"name": "main.n > 1", "hitCondition": "2"}])
+    assert [b.get("message", "")[:40] for b in placed["breakpoints"]] == [
+        "'true' is not a value of 'main.mode'", "", *["the name is the condition, and counts no"] * 2], placed
+    client.breakpoints(text)
+    client.request("continue", threadId=1)
+    assert client.event("stopped")["text"] == "main.mode = Mode#fast"
+    client.step("stepBack")
     client.end()
 
 
@@ -264,7 +348,8 @@ def test_signals():
         found.append((stop["text"], client.stack(1)[0]["name"]))
     assert found == [("motor.speed >= 2 mm/s", "task fast at 0.03 s"), ("delay.q", "task fast at 0.052 s"),
                      ("time >= 500 ms", "task fast at 0.5 s")], found
-    client.step("reverseContinue", 2)
+    stop = client.step("reverseContinue", 2)
+    assert (stop["reason"], stop["text"]) == ("function breakpoint", "delay.q"), stop
     assert client.stack(1)[0]["name"] == "task fast at 0.052 s"
     client.end()
 

@@ -64,6 +64,13 @@ def main():
                     "END_IF\nCASE x OF\n1,2 : y:=1;\n3:\nx:=2;\nELSE\nx:=3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n") == \
         "FUNCTION_BLOCK a\nVAR x, y : INT; END_VAR\nIF x > 1 AND (y < -2) THEN\n    x := f(1, y[2]);  // so\nELSE\n    y := 1;\n\n" \
         "END_IF\nCASE x OF\n    1, 2: y := 1;\n    3:\n        x := 2;\nELSE\n    x := 3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n"
+    assert in_style("\ufeffFUNCTION_BLOCK a\nVAR x:INT; END_VAR\nlab : x:=1;\nGOTO lab;\nCASE x OF\n1 : x:=2;\nEND_CASE;\nEND_FUNCTION_BLOCK\n", ".scl") == \
+        "\ufeffFUNCTION_BLOCK a\nVAR x : INT; END_VAR\nlab: x := 1;\nGOTO lab;\nCASE x OF\n    1: x := 2;\nEND_CASE;\nEND_FUNCTION_BLOCK\n"
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "left_out.st"
+        path.write_text("FUNCTION_BLOCK a\nVAR x : INT; END_VAR\n{IF defined(FOO)}\nx := 1;\n{END_IF}\nx := 2;\nEND_FUNCTION_BLOCK\n", encoding="utf-8")
+        answer = run("format", path)
+        assert answer.returncode == 2 and "left_out.st:4" in answer.stdout + answer.stderr, answer
     total = [0, 0, 0]
     with tempfile.TemporaryDirectory() as folder:
         for part in "programs", "tests/st", "tests/st_tests", "tests/cases":

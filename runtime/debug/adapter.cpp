@@ -260,10 +260,15 @@ class Adapter final : Front {
 
     Json set_function_breakpoints(const Json& arguments) {
         std::vector<std::string> texts;
-        for (const Json& each : arguments.value("breakpoints", Json::array()))
-            texts.push_back(text_in(each, "name"));
+        for (const Json& each : arguments.value("breakpoints", Json::array())) {
+            const bool has_more =
+                !(text_in(each, "condition") + text_in(each, "hitCondition")).empty();
+            texts.push_back(has_more ? "" : text_in(each, "name"));
+        }
         Json all = Json::array();
-        for (const std::string& error : session().signals().set(texts)) {
+        for (std::string error : session().signals().set(texts)) {
+            if (texts[all.size()].empty())
+                error = "the name is the condition, and counts nothing: motor.speed > 20 mm/s";
             all.push_back({{"verified", error.empty()}});
             if (!error.empty()) all.back()["message"] = error;
         }
@@ -281,8 +286,9 @@ class Adapter final : Front {
         const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
         if (frames().empty() || number == 0 || number > frames_.size())
             throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
+        const Frame& frame = frames_[number - 1];
         const Evaluated value =
-            Expression(text).value(frames_[number - 1], session_->made()->checked);
+            Expression(text, *frame.mark.file).value(frame, session_->made()->checked);
         if (!value.error.empty()) throw Refused(value.error);
         Json body = to_json(value.shown);
         body["result"] = body["value"];
@@ -290,11 +296,9 @@ class Adapter final : Front {
     }
 
     Shown variable_in(const Json& arguments) {
-        const std::int64_t reference = number_in(arguments, "variablesReference");
         const std::string name = text_in(arguments, "name");
-        if (reference > 0 && reference <= std::ssize(kept_))
-            for (const Shown& shown : kept_[static_cast<std::size_t>(reference - 1)].inside(0, 0))
-                if (shown.name == name) return shown;
+        for (const Shown& shown : inside(arguments))
+            if (shown.name == name) return shown;
         throw Refused(fmt::format("there is no variable '{}' any more", name));
     }
 
@@ -303,13 +307,14 @@ class Adapter final : Front {
         Session& session = standing();
         const Shown shown = variable_in(arguments);
         const std::string value = text_in(arguments, "value");
-        if (shown.signal.empty())
+        const std::string signal = signal_of(session.loaded().linked, shown);
+        if (signal.empty())
             throw Refused(
                 fmt::format("'{}' is no signal of the program, which alone can be set from "
                             "outside",
                             shown.name));
         Diagnostics out;
-        session.change(shown.signal, value, out);
+        session.change(signal, value, out);
         if (!out.empty()) throw Refused(out.list().front().message);
         return {{"value", value}};
     }
@@ -435,22 +440,28 @@ class Adapter final : Front {
     Json to_json(const Shown& shown) {
         Json variable{{"name", shown.name}, {"value", shown.value}};
         if (!shown.type.empty()) variable["type"] = shown.type;
-        if (!shown.signal.empty()) variable["evaluateName"] = shown.signal;
+        const std::string signal = signal_of(session_->loaded().linked, shown);
+        const std::string& name = signal.empty() ? shown.expression : signal;
+        if (!name.empty()) variable["evaluateName"] = name;
         variable["variablesReference"] = keep(shown);
         if (shown.elements > 0) variable["indexedVariables"] = shown.elements;
         return variable;
     }
 
-    Json variables(const Json& arguments) {
+    /// What is in the variable or group that a request names.
+    std::vector<Shown> inside(const Json& arguments) {
         standing();
         const std::int64_t reference = number_in(arguments, "variablesReference");
         if (reference <= 0 || reference > std::ssize(kept_))
             throw Refused("there is no such variable any more");
-        const auto inside = kept_[static_cast<std::size_t>(reference - 1)].inside;
+        return parts_of(kept_[static_cast<std::size_t>(reference - 1)],
+                        static_cast<std::size_t>(number_in(arguments, "start")),
+                        static_cast<std::size_t>(number_in(arguments, "count")));
+    }
+
+    Json variables(const Json& arguments) {
         Json variables = Json::array();
-        for (const Shown& shown : inside(static_cast<std::size_t>(number_in(arguments, "start")),
-                                         static_cast<std::size_t>(number_in(arguments, "count"))))
-            variables.push_back(to_json(shown));
+        for (const Shown& shown : inside(arguments)) variables.push_back(to_json(shown));
         return {{"variables", variables}};
     }
 

@@ -19,10 +19,10 @@ std::string whole_path(const std::string& path) {
     return unknown ? path : whole.string();
 }
 
-std::shared_ptr<const Expression> read_expression(const std::string& text, std::string& error) {
+std::shared_ptr<const Expression> read_expression(const std::string& text, Breakpoint& to) {
     if (text.empty()) return {};
-    auto expression = std::make_shared<const Expression>(text);
-    if (!expression->error().empty()) error = fmt::format("'{}': {}", text, expression->error());
+    auto expression = std::make_shared<const Expression>(text, *to.file);
+    if (!expression->error().empty()) to.error = fmt::format("'{}': {}", text, expression->error());
     return expression;
 }
 
@@ -57,9 +57,8 @@ void read_log(Breakpoint& to) {
         const bool has_one = close < text.size();
         to.log.emplace_back(
             text.substr(0, has_one ? open : text.size()),
-            has_one
-                ? read_expression(std::string(text.substr(open + 1, close - open - 1)), to.error)
-                : nullptr);
+            has_one ? read_expression(std::string(text.substr(open + 1, close - open - 1)), to)
+                    : nullptr);
         text.remove_prefix(has_one ? close + 1 : text.size());
     }
 }
@@ -105,7 +104,7 @@ Breakpoints::Breakpoints(const st::Library::Made* made) : made_(made) {
         const Mark mark = statement.place.mark();
         const auto [path, is_new] = whole.try_emplace(mark.file->path);
         if (is_new) path->second = whole_path(mark.file->path);
-        lines_.push_back({path->second, mark.line});
+        lines_.push_back({path->second, mark.file, mark.line});
     }
     arrange();
 }
@@ -117,12 +116,14 @@ std::vector<Breakpoint> Breakpoints::set(const std::string& path,
     const std::size_t first = breakpoints_.size();
     for (const Wanted& each : wanted) {
         Breakpoint breakpoint{.id = ++last_id_, .line = each.line, .path = whole, .wanted = each};
-        breakpoint.condition = read_expression(each.condition, breakpoint.error);
-        breakpoint.hits = read_hits(each.hits, breakpoint.error);
-        read_log(breakpoint);
-        if (!place(breakpoint))
+        if (place(breakpoint)) {
+            breakpoint.condition = read_expression(each.condition, breakpoint);
+            breakpoint.hits = read_hits(each.hits, breakpoint.error);
+            read_log(breakpoint);
+        } else {
             breakpoint.error =
                 "no statement of the program's Structured Text begins here or behind";
+        }
         breakpoint.is_verified = breakpoint.error.empty();
         breakpoints_.push_back(std::move(breakpoint));
     }
@@ -136,7 +137,7 @@ bool Breakpoints::place(Breakpoint& breakpoint) const {
     for (const Line& line : lines_)
         if (line.path == breakpoint.path && line.line >= breakpoint.wanted.line &&
             (nearest == 0 || line.line < nearest))
-            nearest = line.line;
+            nearest = line.line, breakpoint.file = line.file;
     if (nearest != 0) breakpoint.line = nearest;
     return nearest != 0;
 }

@@ -31,7 +31,8 @@ struct Breakpoint {
     int id = 0;
     int line = 0;  ///< with code, or as it was wanted
     bool is_verified = false;
-    std::string path = {};  ///< of the file
+    std::string path = {};                             ///< of the file
+    std::shared_ptr<const SourceFile> file = nullptr;  ///< that; null: no code is there
     Wanted wanted = {};
     std::string error = {};  ///< why it is none
     std::shared_ptr<const Expression> condition = {};
@@ -68,6 +69,7 @@ class Breakpoints {
   private:
     struct Line {
         std::string path;
+        std::shared_ptr<const SourceFile> file;
         int line = 0;
     };
 

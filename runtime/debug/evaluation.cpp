@@ -1,6 +1,7 @@
 #include "runtime/debug/evaluation.hpp"
 
-#include <cmath>
+#include <bit>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -8,6 +9,8 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/library/compiled.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/value_text.hpp"
@@ -29,53 +32,109 @@ struct Failed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A value while it is reckoned with: at its seat, if it has one.
+/// What an expression means: a value of a type, with its place in memory if it has one; or a name
+/// that no variable has.
 struct Operand {
-    enum class Of : std::uint8_t { truth, whole, real, text, name, place };
-    Of of = Of::whole;
-    Wide whole = 0;
-    double real = 0;
-    std::string text = {};  ///< of a text; of a name that is no variable
+    std::string name = {};
     Seat seat = {};
+    st::Constant value = {};
     std::string unit = {};
 
-    bool is_number() const { return of == Of::truth || of == Of::whole || of == Of::real; }
-    double as_real() const { return of == Of::real ? real : static_cast<double>(whole); }
+    bool is_value() const { return name.empty() && is_value_type(*seat.type); }
+    static bool is_value_type(const st::Type& type) {
+        return type.is_scalar() || type.kind == st::Type::Kind::text;
+    }
 };
 
-Operand of_truth(bool value) {
-    return {.of = Operand::Of::truth, .whole = value};
-}
-
 Operand load(const Seat& seat, const std::string& unit) {
-    using Kind = st::Type::Kind;
-    Operand value{.seat = seat, .unit = unit};
+    Operand found{.seat = seat, .unit = unit};
     const st::Type& type = *seat.type;
-    if (type.kind == Kind::text) {
-        value.of = Operand::Of::text;
-        value.text.assign(reinterpret_cast<const char*>(seat.at + 8),
-                          static_cast<std::size_t>(read<std::uint64_t>(seat.at)));
-    } else if (type.is_real()) {
-        value.of = Operand::Of::real;
-        value.real = read<double>(seat.at);
-    } else if (type.is_scalar() || type.kind == Kind::enumeration) {
-        value.of = type.kind == Kind::boolean ? Operand::Of::truth : Operand::Of::whole;
-        value.whole = type.is_unsigned_64() ? Wide{read<std::uint64_t>(seat.at)}
-                                            : Wide{read<std::int64_t>(seat.at)};
-    } else {
-        value.of = Operand::Of::place;
-    }
-    return value;
+    if (type.kind == st::Type::Kind::text)
+        found.value.text.assign(reinterpret_cast<const char*>(seat.at + 8),
+                                static_cast<std::size_t>(read<std::uint64_t>(seat.at)));
+    else if (type.is_real())
+        found.value.real = read<double>(seat.at);
+    else if (type.is_scalar())
+        found.value.integer = type.is_unsigned_64() ? Wide{read<std::uint64_t>(seat.at)}
+                                                    : Wide{read<std::int64_t>(seat.at)};
+    return found;
 }
 
+/// Variables are found in memory; what is made of their values is what the checker makes of
+/// constants, with the machine that scans.
 class Reckoning {
   public:
-    Reckoning(const Frame& frame, const st::Checked& checked) : frame_(frame), checked_(checked) {}
+    Reckoning(st::Tree& tree, const Frame& frame, const st::Checked& checked)
+        : tree_(tree), frame_(frame), checked_(checked), c_{tree, nothing_, st::evaluate, wrong_} {
+        for (const st::Type& type : checked.types) {
+            if (!type.has_values() || type.name.empty()) continue;
+            c_.users.types.emplace(type.name, st::NamedType{&declared_, &type});
+            for (std::size_t i = 0; i < type.values.size(); ++i) {
+                const auto [it, is_new] =
+                    c_.users.values.emplace(type.values[i], st::NamedValue{&type, i});
+                it->second.ambiguous = !is_new;
+            }
+        }
+    }
 
-    Operand value(const st::Expression& e) const {
+    Operand value(const st::Expression& e) {
+        if (is_place(e))
+            if (Operand found = place(e); found.name.empty()) return found;
+        st::Expression* made = reckoned(e, nullptr);
+        return {.seat = {made->type, nullptr, &frame_}, .value = made->constant};
+    }
+
+  private:
+    static bool is_place(const st::Expression& e) {
+        return e.kind == E::name || e.kind == E::member || e.kind == E::index ||
+               e.kind == E::deref || e.kind == E::bit;
+    }
+
+    /// The value as a constant; `expected` tells which enumeration a name is of.
+    st::Expression* reckoned(const st::Expression& e, const st::Type* expected) {
+        st::Expression* made = with_values(e);
+        if (!st::check(c_, made, expected) || !st::evaluate(c_, made))
+            throw Failed(wrong_.empty() || is_place(e) ? unknown(e)
+                                                       : wrong_.list().front().message);
+        return made;
+    }
+
+    /// The expression with constants in place of variables.
+    st::Expression* with_values(const st::Expression& e) {
+        if (is_place(e)) {
+            const Operand found = place(e);
+            if (!found.name.empty()) return st::make_copy(c_, e);
+            if (!found.is_value()) throw Failed(fmt::format("'{}' is no value", e.place.text()));
+            return st::make_constant(c_, e, *found.seat.type, found.value);
+        }
+        st::Expression* made = st::make_copy(c_, e);
+        if (e.kind == E::typed) return made;
+        if (e.kind == E::call) {
+            const std::string_view name = e.operands[0]->token.text;
+            const auto is_called = [&](const st::Routine& r) {
+                return st::same_name(r.name, name);
+            };
+            if (e.operands[0]->kind != E::name || std::ranges::any_of(checked_.routines, is_called))
+                throw Failed(fmt::format("'{}' is not for a debugger, which changes nothing",
+                                         e.place.text()));
+            for (st::Argument& argument : made->arguments)
+                argument.value = with_values(*argument.value);
+            return made;
+        }
+        const bool ends_early = e.op == Word::and_then_ || e.op == Word::or_else_;
+        if (e.kind == E::binary && ends_early) {
+            made->operands[0] = reckoned(*e.operands[0], &st::bool_type);
+            if ((made->operands[0]->constant.integer != 0) == (e.op == Word::or_else_))
+                return made->operands[0];
+        } else if (e.operands[0]) {
+            made->operands[0] = with_values(*e.operands[0]);
+        }
+        if (e.operands[1]) made->operands[1] = with_values(*e.operands[1]);
+        return made;
+    }
+
+    Operand place(const st::Expression& e) {
         switch (e.kind) {
-            case E::constant:
-                return literal(e);
             case E::name:
                 return named(e);
             case E::member:
@@ -83,40 +142,15 @@ class Reckoning {
             case E::index:
                 return element(e);
             case E::deref:
-                return followed(e, value(*e.operands[0]));
+                return followed(e, place(*e.operands[0]));
             case E::bit:
                 return bit(e);
-            case E::typed:
-                return typed(e);
-            case E::unary:
-                return unary(e);
-            case E::binary:
-                return binary(e);
             default:
-                throw Failed(fmt::format("'{}' is not for a debugger, which changes nothing",
-                                         e.place.text()));
+                throw Failed(unknown(e));
         }
     }
 
-  private:
-    static Operand literal(const st::Expression& e) {
-        const std::string_view text = e.token.text;
-        if (e.token.word == Word::text)
-            return {.of = Operand::Of::text, .text = st::read_text(text).value_or("")};
-        if (e.token.word == Word::real)
-            return {.of = Operand::Of::real, .real = st::read_real(text).value_or(NAN)};
-        std::optional<Wide> whole;
-        if (e.token.word == Word::integer) whole = st::read_integer(text);
-        if (e.token.word == Word::duration) {
-            using Kind = st::Type::Kind;
-            for (const Kind kind : {Kind::time, Kind::date, Kind::clock, Kind::moment})
-                if (!whole) whole = st::read_time(text, kind);
-        }
-        if (!whole) throw Failed(fmt::format("'{}' is no value", e.place.text()));
-        return {.whole = *whole};
-    }
-
-    /// In the routine, or in the block that it is a method of.
+    /// In the routine, or in the block that it is a method of; beside all.
     Operand named(const st::Expression& e) const {
         const std::string_view name = e.token.text;
         const st::Routine* block = nullptr;
@@ -124,19 +158,50 @@ class Reckoning {
             block = routine;
             const st::Variable* found = st::find_in(routine->names, name);
             if (!found) continue;
-            const st::Variable& variable = *found;
-            if (variable.space == st::Space::constant && variable.type->is_real())
-                return {.of = Operand::Of::real, .real = variable.value.real};
-            if (variable.space == st::Space::constant) return {.whole = variable.value.integer};
-            return at(seat_of(variable, frame_.base, frame_), e, variable.unit);
+            if (found->space == st::Space::constant)
+                return {.seat = {found->type, nullptr, &frame_},
+                        .value = found->value,
+                        .unit = found->unit};
+            return at(seat_of(*found, frame_.base, frame_), e, found->unit);
         }
         if (st::same_name(name, "this") && block && block->type)
             return load({block->type, frame_.base, &frame_}, "");
         if (const st::Variable* global = global_of("", name))
             return at(seat_of(*global, frame_.base, frame_), e, global->unit);
-        if (st::same_name(name, "true") || st::same_name(name, "false"))
-            return of_truth(st::same_name(name, "true"));
-        return {.of = Operand::Of::name, .text = std::string(name)};
+        for (std::size_t i = 0; i < checked_.globals.size(); ++i)
+            if (const st::Global& data = checked_.globals[i];
+                data.pou && st::same_name(data.name, name))
+                return load({data.type, global_at(static_cast<int>(i), frame_), &frame_}, "");
+        return {.name = std::string(name)};
+    }
+
+    /// Of another block of the program.
+    std::optional<Operand> signal(std::string_view name) const {
+        using Is = lineshaft::Type;
+        const Signal* signal = frame_.machine->find(name);
+        if (!signal) return {};
+        Operand found{.unit = signal->unit};
+        const st::Type* type = signal->unit == "ns" ? &st::time_type : &st::lint_type;
+        if (signal->type == Is::real) {
+            type = is_single(signal->port) ? &st::real_type : &st::lreal_type;
+            found.value.real = std::get<double>(signal->value());
+        } else if (signal->type == Is::boolean) {
+            type = &st::bool_type;
+            found.value.integer = std::get<bool>(signal->value());
+        } else {
+            found.value.integer = std::get<std::int64_t>(signal->value());
+        }
+        if (signal->type == Is::enumeration)
+            for (const st::Type& each : checked_.types)
+                if (std::ranges::equal(each.values, signal->names)) type = &each;
+        found.seat = {type, nullptr, &frame_};
+        return found;
+    }
+
+    bool is_single(Port port) const {
+        return port.instance >= 0 && frame_.machine->blocks[static_cast<std::size_t>(port.instance)]
+                                             .type->fields[static_cast<std::size_t>(port.field)]
+                                             .maximum == double{std::numeric_limits<float>::max()};
     }
 
     /// Of VAR_GLOBAL: `x`, and with the name of its list, whether programs have to write that or
@@ -172,159 +237,92 @@ class Reckoning {
         return load(target, "");
     }
 
-    Operand bit(const st::Expression& e) const {
-        const Operand whole = number(*e.operands[0]);
+    Operand bit(const st::Expression& e) {
+        const Operand whole = place(*e.operands[0]);
         std::string_view written = e.token.text;
         written.remove_prefix(std::min(written.find_first_of("0123456789"), written.size()));
-        const auto place = st::read_integer(written);
-        if (whole.of != Operand::Of::whole || !place || *place > 63) throw Failed(unknown(e));
-        return of_truth((whole.whole >> static_cast<int>(*place) & 1) != 0);
+        const auto number = st::read_integer(written);
+        if (!whole.is_value() || !number || *number > 63) throw Failed(unknown(e));
+        return {.seat = {&st::bool_type, nullptr, &frame_},
+                .value = {.integer = whole.value.integer >> static_cast<int>(*number) & 1}};
     }
 
-    Operand member(const st::Expression& e) const {
-        const Operand whole = value(*e.operands[0]);
-        if (whole.of == Operand::Of::name)
-            if (const st::Variable* global = global_of(whole.text, e.token.text))
+    /// The name of a list of globals is none that a variable has, and so is that of a type, which a
+    /// variable may be called, too.
+    Operand member(const st::Expression& e) {
+        const Operand whole = place(*e.operands[0]);
+        if (!whole.name.empty()) {
+            if (const st::Variable* global = global_of(whole.name, e.token.text))
                 return at(seat_of(*global, frame_.base, frame_), e, global->unit);
-        if (whole.of != Operand::Of::place) throw Failed(unknown(e));
+            const std::string full = fmt::format("{}.{}", whole.name, e.token.text);
+            return signal(full).value_or(Operand{.name = full});
+        }
+        if (whole.is_value()) return {.name = std::string(e.place.text())};
         const st::Type& type = *whole.seat.type;
-        const bool has_parts =
-            type.kind == st::Type::Kind::structure || type.kind == st::Type::Kind::block;
-        const st::Variable* part = has_parts ? st::find_member(type, e.token.text) : nullptr;
+        const st::Variable* part = st::find_member(type, e.token.text);
         if (!part) throw Failed(unknown(e));
-        const Seat seat =
-            type.kind == st::Type::Kind::block
-                ? seat_of(*part, whole.seat.at, frame_)
-                : Seat{part->type, whole.seat.at + 8 * std::size_t{part->slot}, &frame_};
-        if (!seat.at) throw Failed(unknown(e));
+        std::byte* const in_block = whole.seat.at + 8 * std::size_t{part->slot};
+        if (part->is_byte)
+            return {.seat = {part->type, nullptr, &frame_},
+                    .value = {.integer = read<std::uint8_t>(whole.seat.at + part->byte)}};
+        const Seat seat = type.kind == st::Type::Kind::block
+                              ? seat_of(*part, whole.seat.at, *whole.seat.frame)
+                              : Seat{part->type, in_block, whole.seat.frame};
         return at(seat, e, part->unit);
     }
 
-    Operand element(const st::Expression& e) const {
-        Operand whole = value(*e.operands[0]);
+    Operand element(const st::Expression& e) {
+        Operand whole = place(*e.operands[0]);
+        if (!whole.name.empty())
+            if (auto found = signal(e.place.text())) return *found;
         for (const st::Argument& argument : e.arguments) {
-            if (whole.of != Operand::Of::place || whole.seat.type->kind != st::Type::Kind::array)
+            if (!whole.name.empty() || whole.seat.type->kind != st::Type::Kind::array)
                 throw Failed(unknown(e));
             const st::Type& array = *whole.seat.type;
-            const Operand index = value(*argument.value);
-            if (index.of != Operand::Of::whole || index.whole < array.lower ||
-                index.whole > array.upper)
+            const Wide index = reckoned(*argument.value, &st::dint_type)->constant.integer;
+            if (index < array.lower || index > array.upper)
                 throw Failed(fmt::format("'{}' is not an index from {} to {}",
                                          argument.value->place.text(), array.lower, array.upper));
-            const auto at = static_cast<std::size_t>(index.whole - array.lower);
-            whole =
-                load({array.element, whole.seat.at + 8 * at * st::element_slots(array), &frame_},
-                     whole.unit);
+            const auto at = static_cast<std::size_t>(index - array.lower);
+            whole = load({array.element, whole.seat.at + 8 * at * st::element_slots(array),
+                          whole.seat.frame},
+                         whole.unit);
         }
         return whole;
-    }
-
-    /// `Mode#idle`, `INT#5`.
-    Operand typed(const st::Expression& e) const {
-        const Operand of_type = value(*e.operands[0]);
-        if (of_type.of != Operand::Of::name) return of_type;
-        for (const st::Type& type : checked_.types)
-            if (type.has_values() && st::same_name(type.name, e.token.text))
-                return {.whole = number_of(type, of_type.text)};
-        throw Failed(unknown(e));
-    }
-
-    static Wide number_of(const st::Type& type, const std::string& name) {
-        const std::string* value = st::find_called(type.values, name);
-        if (!value) throw Failed(fmt::format("{} has no value '{}'", type.name, name));
-        return type.kept(static_cast<std::size_t>(value - type.values.data()));
-    }
-
-    Operand unary(const st::Expression& e) const {
-        Operand value = number(*e.operands[0]);
-        if (e.op == Word::not_) {
-            value.whole = value.of == Operand::Of::truth ? Wide{value.whole == 0} : ~value.whole;
-        } else if (e.op == Word::minus) {
-            value.whole = -value.whole;
-            value.real = -value.real;
-        }
-        value.seat = {};
-        return value;
-    }
-
-    Operand number(const st::Expression& e) const {
-        Operand operand = value(e);
-        if (operand.of == Operand::Of::name) throw Failed(unknown(e));
-        if (!operand.is_number()) throw Failed(fmt::format("'{}' is no number", e.place.text()));
-        return operand;
-    }
-
-    Operand binary(const st::Expression& e) const {
-        Operand a = value(*e.operands[0]);
-        if (e.op == Word::and_then_ && a.whole == 0) return of_truth(false);
-        if (e.op == Word::or_else_ && a.whole != 0) return of_truth(true);
-        Operand b = value(*e.operands[1]);
-        const auto mean = [](Operand& name, const Operand& other) {
-            const bool is_value = name.of == Operand::Of::name && other.seat.type &&
-                                  other.seat.type->kind == st::Type::Kind::enumeration;
-            if (is_value) name = {.whole = number_of(*other.seat.type, name.text)};
-        };
-        mean(a, b);
-        mean(b, a);
-        if (a.of == Operand::Of::text && b.of == Operand::Of::text)
-            return compared(e, a.text.compare(b.text), 0);
-        if (!a.is_number()) throw Failed(unknown(*e.operands[0]));
-        if (!b.is_number()) throw Failed(unknown(*e.operands[1]));
-        const bool is_real = a.of == Operand::Of::real || b.of == Operand::Of::real;
-        if (!st::is_comparison(e.op)) return reckoned(e, a, b, is_real);
-        return is_real ? compared(e, a.as_real(), b.as_real()) : compared(e, a.whole, b.whole);
-    }
-
-    template <class T>
-    static Operand compared(const st::Expression& e, const T& a, const T& b) {
-        const auto truth = st::compare(e.op, a, b);
-        if (!truth) throw Failed(fmt::format("'{}' compares nothing", e.place.text()));
-        return of_truth(*truth);
-    }
-
-    static Operand reckoned(const st::Expression& e, const Operand& a, const Operand& b,
-                            bool is_real) {
-        const bool joins = st::is_logic(e.op), is_rest = e.op == Word::mod_;
-        if (e.op == Word::power)
-            return {.of = Operand::Of::real, .real = std::pow(a.as_real(), b.as_real())};
-        if (is_real && (joins || is_rest))
-            throw Failed(fmt::format("'{}' is not for real numbers", e.place.text()));
-        if (!is_real && (is_rest || e.op == Word::divided) && b.whole == 0)
-            throw Failed("a division by zero");
-        const auto made = st::operate(e.op, {a.whole, a.as_real()}, {b.whole, b.as_real()});
-        if (is_real) return {.of = Operand::Of::real, .real = made.real};
-        return {.of = joins && a.of == b.of ? a.of : Operand::Of::whole, .whole = made.integer};
     }
 
     static std::string unknown(const st::Expression& e) {
         return fmt::format("'{}' is not known here", e.place.text());
     }
 
+    st::Tree& tree_;
     const Frame& frame_;
     const st::Checked& checked_;
+    Catalog nothing_;
+    st::TypeDeclaration declared_;
+    Diagnostics wrong_;
+    st::Checking c_;
 };
 
-Shown show_operand(const std::string& text, const Operand& value) {
-    if (value.seat.type) return show(text, value.seat, value.unit);
-    switch (value.of) {
-        case Operand::Of::truth:
-            return {.name = text, .value = value.whole != 0 ? "TRUE" : "FALSE"};
-        case Operand::Of::real:
-            return {.name = text, .value = fmt::format("{}", value.real)};
-        case Operand::Of::text:
-            return {.name = text, .value = st::text_literal(value.text)};
-        default:
-            return {.name = text, .value = st::to_string(value.whole)};
-    }
+Shown show_operand(const std::string& text, const Operand& found) {
+    const st::Type& type = *found.seat.type;
+    if (found.seat.at) return show(text, found.seat, found.unit);
+    if (type.kind == st::Type::Kind::text)
+        return {.name = text, .value = st::text_literal(found.value.text), .type = type.name};
+    const std::uint64_t bits = type.is_real() ? std::bit_cast<std::uint64_t>(found.value.real)
+                                              : static_cast<std::uint64_t>(found.value.integer);
+    return {.name = text, .value = st::value_text(type, bits), .type = type.name};
 }
 
 }  // namespace
 
-Expression::Expression(std::string text)
+Expression::Expression(std::string text, const SourceFile& like)
     : text_(std::move(text)), parsed_(std::make_unique<Parsed>()) {
     Diagnostics wrong;
     const auto file = std::make_shared<SourceFile>(SourceFile{
-        "watch.st", fmt::format("FUNCTION watch : BOOL\nwatch := {}\n;\nEND_FUNCTION\n", text_)});
+        .path = like.path,
+        .text = fmt::format("FUNCTION watch : BOOL\nwatch := {}\n;\nEND_FUNCTION\n", text_),
+        .read_as = like.read_as});
     st::parse(st::read_tokens(file, wrong), parsed_->tree, wrong);
     const auto& units = parsed_->tree.units;
     if (!wrong.empty())
@@ -341,10 +339,12 @@ Expression::Expression(Expression&&) noexcept = default;
 Evaluated Expression::value(const Frame& frame, const st::Checked& checked) const {
     if (!error_.empty()) return {error_};
     try {
-        const Operand found = Reckoning(frame, checked).value(*parsed_->root);
-        if (found.of == Operand::Of::name) return {fmt::format("'{}' is not known here", text_)};
+        st::Tree tree;
+        const Operand found = Reckoning(tree, frame, checked).value(*parsed_->root);
         Evaluated evaluated{.shown = show_operand(text_, found)};
-        if (found.of == Operand::Of::truth) evaluated.truth = found.whole != 0;
+        evaluated.shown.expression = text_;
+        if (found.seat.type->kind == st::Type::Kind::boolean)
+            evaluated.truth = found.value.integer != 0;
         return evaluated;
     } catch (const Failed& why) {
         return {why.what()};

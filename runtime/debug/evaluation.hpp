@@ -16,10 +16,12 @@ struct Evaluated {
 };
 
 /// An expression of Structured Text that somebody watches: variables that a routine sees, their
-/// parts, constants and operators. It calls nothing, so it changes nothing.
+/// parts, signals of the program, constants, operators and functions of the standard, as the
+/// program reckons with them. It calls nothing else, so it changes nothing.
 class Expression {
   public:
-    explicit Expression(std::string text);
+    /// As in that file.
+    Expression(std::string text, const SourceFile& like);
     ~Expression();
     Expression(Expression&&) noexcept;
 

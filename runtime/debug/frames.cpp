@@ -18,37 +18,33 @@ auto routine_at(const st::Library::Made& made, std::uint64_t instruction) {
     return std::ranges::upper_bound(routines, instruction, {}, &st::CodeRoutine::end);
 }
 
-Frame frame_at(const st::Library::Made& made, std::uint64_t instruction) {
-    const auto& routines = made.generated.code.routines;
-    const auto it = routine_at(made, instruction);
-    return {.routine = made.checked.order[static_cast<std::size_t>(it - routines.begin())],
-            .name = it->name,
-            .mark = made.generated.code.places[instruction].mark()};
+Frame frame_at(const st::Halt& halt, const st::Library::Made& made, const Machine& machine,
+               std::uint64_t instruction, std::uint64_t base) {
+    const auto number = routine_at(made, instruction) - made.generated.code.routines.begin();
+    return {.routine = made.checked.order[static_cast<std::size_t>(number)],
+            .name = {},
+            .mark = {},
+            .base = st::place_of(base, halt.root, halt.context),
+            .root = halt.root,
+            .context = &halt.context,
+            .code = &halt.code,
+            .machine = &machine};
 }
 
 }  // namespace
 
-Frame innermost(const st::Halt& halt, const st::Library::Made& made) {
-    const auto number = routine_at(made, halt.code.statements[halt.statement].instruction) -
-                        made.generated.code.routines.begin();
-    Frame frame;
-    frame.routine = made.checked.order[static_cast<std::size_t>(number)];
-    frame.base = st::place_of(halt.base, halt.root, halt.context);
-    frame.root = halt.root;
-    frame.context = &halt.context;
-    frame.code = &halt.code;
-    return frame;
+Frame innermost(const st::Halt& halt, const st::Library::Made& made, const Machine& machine) {
+    const std::uint64_t instruction = halt.code.statements[halt.statement].instruction;
+    return frame_at(halt, made, machine, instruction, halt.base);
 }
 
 std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made,
                              const Machine& machine) {
     std::vector<Frame> frames;
     const auto add = [&](std::uint64_t instruction, std::uint64_t base) {
-        Frame& frame = frames.emplace_back(frame_at(made, instruction));
-        frame.base = st::place_of(base, halt.root, halt.context);
-        frame.root = halt.root;
-        frame.context = &halt.context;
-        frame.code = &halt.code;
+        Frame& frame = frames.emplace_back(frame_at(halt, made, machine, instruction, base));
+        frame.name = routine_at(made, instruction)->name;
+        frame.mark = made.generated.code.places[instruction].mark();
     };
     const st::StatementStart& statement = halt.code.statements[halt.statement];
     add(statement.instruction, halt.base);
@@ -59,7 +55,6 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
     }
     const std::string instance = name_of_instance(machine, halt.root);
     if (!instance.empty()) frames.back().name += fmt::format(" ({})", instance);
-    frames.back().block = instance;
     return frames;
 }
 

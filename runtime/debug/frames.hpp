@@ -15,9 +15,9 @@ struct Frame {
     Mark mark;                         ///< the statement that comes next, or the call that goes on
     std::byte* base = nullptr;         ///< its first slot
     std::byte* root = nullptr;         ///< of the instance that is scanned
-    std::string block = {};            ///< whose body it is, of the program; or empty
     const Context* context = nullptr;  ///< of that
     const st::Code* code = nullptr;
+    const Machine* machine = nullptr;
 };
 
 /// Those that run, the innermost first.
@@ -25,6 +25,6 @@ std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made
                              const Machine& machine);
 
 /// The innermost alone, without its name and place: for conditions, which are asked often.
-Frame innermost(const st::Halt& halt, const st::Library::Made& made);
+Frame innermost(const st::Halt& halt, const st::Library::Made& made, const Machine& machine);
 
 }  // namespace lineshaft::debug

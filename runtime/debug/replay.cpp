@@ -88,6 +88,7 @@ std::optional<Position> Session::search(std::int64_t from, const Position& end, 
         if (!run_freely(limit, true)) break;
     executive.remove(*this);
     const std::optional<Position> found = search_->found;
+    risen_ = search_->risen;
     search_.reset();
     return found;
 }
@@ -124,6 +125,7 @@ bool Session::matches(const Search& search, const st::Halt& halt) {
 /// Where the jump leads to.
 Position Session::target() {
     const Plan plan = *std::exchange(jump_, {});
+    risen_.clear();
     const Way way = plan.command.way;
     if (way == Way::to) return plan.command.to;
     if (way == Way::back_go && breakpoints_.empty() && signals_.empty()) return {};
@@ -143,7 +145,7 @@ void Session::wander() {
         between_ = Stop{"entry", "the beginning of the run"};
     } else if (to.scan == Position::behind) {
         start_at(executive, to.time + 1);
-        between_ = Stop{"step"};
+        between_ = risen_.empty() ? Stop{"step"} : Stop{"function breakpoint", risen_};
         instant_ = to.time;
     } else {
         start_at(executive, to.time);

@@ -194,7 +194,7 @@ std::vector<Breakpoint> Session::set_breakpoints(const std::string& path,
 bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
     const auto& here = breakpoints_.at(halt.statement);
     if (here.empty()) return false;
-    const Frame frame = innermost(halt, *made_);
+    const Frame frame = innermost(halt, *made_, machine_);
     for (const Breakpoint* breakpoint : here) {
         if (breakpoint->condition) {
             const Evaluated value = breakpoint->condition->value(frame, made_->checked);
@@ -246,8 +246,10 @@ void Session::settled(std::int64_t time, std::int64_t) {
         const Way way = search_->plan.command.way;
         watch(now, false);
         if (now < search_->end && ((way == Way::back && search_->plan.command.task == task) ||
-                                   (way == Way::back_go && !risen.empty())))
+                                   (way == Way::back_go && !risen.empty()))) {
             search_->found = now;
+            search_->risen = risen;
+        }
         return;
     }
     if (between_) return;

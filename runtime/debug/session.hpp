@@ -138,6 +138,7 @@ class Session final : Observer, EventSink {
         std::optional<Position> found = {};
         std::string bytes = {};  ///< of writer: as they were when last looked at
         Position last = {};      ///< of writer: then
+        std::string risen = {};  ///< the signal's condition that it found
     };
 
     // What is seen.
@@ -206,6 +207,7 @@ class Session final : Observer, EventSink {
     std::optional<Plan> plan_;
     std::optional<Stop> between_;  ///< stands still when the instant has passed
     std::optional<Plan> jump_;     ///< back
+    std::string risen_;            ///< what the jump leads to, of conditions of signals
     std::optional<Position> goal_;
     std::optional<Search> search_;
     bool quiet_ = false;     ///< nothing is told, nothing stops

@@ -3,7 +3,7 @@
 #include <compare>
 #include <utility>
 
-#include "runtime/outside/outside.hpp"
+#include "runtime/serve/desk.hpp"
 
 namespace lineshaft::debug {
 
@@ -58,11 +58,13 @@ void SignalConditions::read(Condition& condition, Diagnostics& out) {
     if (is_negated) name = trimmed(name.substr(4));
     Machine& machine = loaded_.linked.machine;
     const Connecting to{loaded_.program, loaded_.linked.net, machine, Reader(out)};
-    const auto target = find_target(to, node_of(name));
+    const Node node = node_of(name);
+    const auto target = find_target(to, node);
     if (!target) return;
     condition.signal = machine.placed(target->signal);
     if (value.empty()) value = is_negated ? "false" : "true";
-    condition.wanted = read_value(to, *target, node_of(value)).value_or(condition.wanted);
+    condition.wanted = read_value(to, *target, node_of(as_in_a_program(value, target->field)))
+                           .value_or(condition.wanted);
 }
 
 bool SignalConditions::holds(const Condition& condition, std::int64_t time) {

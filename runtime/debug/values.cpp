@@ -38,11 +38,7 @@ Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& 
     }
     const Seat seat = seat_of(variable, base, frame);
     if (!seat.at) return {.name = name, .value = "not in the machine's memory"};
-    Shown shown = show(name, seat, variable.unit);
-    if (base == frame.root && !frame.block.empty() && variable.space == st::Space::frame &&
-        (variable.type->is_scalar() || variable.type->kind == Kind::enumeration))
-        shown.signal = frame.block + "." + name;
-    return shown;
+    return show(name, seat, variable.unit);
 }
 
 /// The groups of a block's or a routine's variables that have any.
@@ -92,7 +88,9 @@ List fields_inside(const BlockType& kind, const std::byte* block) {
     for (const Field& field : kind.fields)
         fields.push_back({.name = std::string(field.name),
                           .value = field_text(field, block),
-                          .type = std::string(name_of(field.direction))});
+                          .type = std::string(name_of(field.direction)),
+                          .at = block + field.offset,
+                          .bytes = size_of(field.type)});
     return fields;
 }
 
@@ -196,6 +194,11 @@ Seat target_of(const Seat& reference) {
     return {};
 }
 
+std::byte* global_at(int global, const Frame& frame) {
+    const std::byte* slot = frame.root + 8 * (st::globals_slot + static_cast<std::size_t>(global));
+    return frame.context->instances[read<std::uint64_t>(slot)];
+}
+
 Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) {
     const std::size_t offset = 8 * std::size_t{variable.slot};
     switch (variable.space) {
@@ -206,14 +209,36 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
             if (address == 0) return {};
             return {variable.type, st::place_of(address, frame.root, *frame.context), &frame};
         }
-        case st::Space::global: {
-            const auto number = read<std::uint64_t>(
-                frame.root + 8 * (st::globals_slot + static_cast<std::size_t>(variable.global)));
-            return {variable.type, frame.context->instances[number] + offset, &frame};
-        }
+        case st::Space::global:
+            return {variable.type, global_at(variable.global, frame) + offset, &frame};
         default:
             return {};
     }
+}
+
+List parts_of(const Shown& whole, std::size_t first, std::size_t count) {
+    List parts = whole.inside(first, count);
+    for (Shown& part : parts) {
+        const bool is_joined =
+            whole.expression.empty() || part.name.front() == '[' || part.name == "^";
+        part.expression = whole.expression;
+        if (!part.is_group()) part.expression += (is_joined ? "" : ".") + part.name;
+    }
+    return parts;
+}
+
+std::string signal_of(const Linked& linked, const Shown& shown) {
+    if (!shown.signal.empty() || !shown.at || shown.inside) return shown.signal;
+    for (std::size_t i = 0; i < linked.machine.blocks.size(); ++i) {
+        const BlockPlace& block = linked.machine.blocks[i];
+        const auto offset = static_cast<std::size_t>(shown.at - block.live);
+        if (shown.at < block.live || offset >= block.type->size) continue;
+        const auto& fields = block.type->fields;
+        for (std::size_t field = 0; field < fields.size(); ++field)
+            if (fields[field].offset == offset && fields[field].direction != Direction::in_out)
+                return linked.net.signal({static_cast<int>(i), static_cast<int>(field)}).name;
+    }
+    return {};
 }
 
 List scopes_of(const Frame& frame) {

@@ -12,12 +12,15 @@ namespace lineshaft::debug {
 /// A value as it is shown, or a group of them. What is in it is made when somebody asks.
 struct Shown {
     std::string name, value, type = {};
-    std::string signal = {};        ///< as a program names it, if it can
+    std::string signal = {};        ///< as a program names it, where `at` does not tell
+    std::string expression = {};    ///< what a watch names it by in its frame
     std::size_t elements = 0;       ///< of an array
     const std::byte* at = nullptr;  ///< where it stands; null: nowhere
     std::size_t bytes = 0;          ///< there
     /// So many from the one numbered `first` on, of an array; of all else all.
     std::function<std::vector<Shown>(std::size_t first, std::size_t count)> inside = {};
+
+    bool is_group() const { return value.empty() && type.empty(); }
 };
 
 /// A value of Structured Text in memory, and how what it refers to is found.
@@ -31,6 +34,15 @@ Shown show(std::string name, const Seat& seat, const std::string& unit = {});
 
 /// What a reference is to, as the machine reaches it; `at` null: no value of its type, or NULL.
 Seat target_of(const Seat& reference);
+
+/// What is in it, as a watch reaches it: a group has no name in the language.
+std::vector<Shown> parts_of(const Shown& whole, std::size_t first, std::size_t count);
+
+/// The signal that has its value there; empty: none has.
+std::string signal_of(const Linked& linked, const Shown& shown);
+
+/// Where a list of global variables or a data block is, by its number.
+std::byte* global_at(int global, const Frame& frame);
 
 /// Where a variable of a routine's frame is; `at` null: nowhere.
 Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame);

@@ -31,7 +31,7 @@ void warn_of_what_comes_late(const Connecting& to);  ///< likewise
 /// What a value from outside is written to.
 struct Target {
     Signal signal;     ///< with the unit that it takes
-    Field field = {};  ///< of a block, or made up for an input; named as the program does
+    Field field = {};  ///< of a block, or made up for an input; its name is the node's text
     std::byte* live = nullptr;
     std::byte* published = nullptr;  ///< may be the live one
 
@@ -41,9 +41,11 @@ struct Target {
 /// The readable signal, so an output before an input of the same name; of an output of the program
 /// the signal that it shows.
 std::optional<Target> find_target(const Connecting& to, const Node& node);
+std::optional<Target> find_target(const Connecting& to, Node&& node) = delete;
 
 /// What a stimulus may set: an input that no wire feeds.
 std::optional<Target> find_settable(const Connecting& to, const Node& node);
+std::optional<Target> find_settable(const Connecting& to, Node&& node) = delete;
 
 /// A value for an input, or for a signal to keep, checked; reported if it cannot be. Their times
 /// are still to be said.
@@ -53,6 +55,7 @@ std::optional<Force> find_force(const Connecting& to, const Node& signal, const 
 /// The same in steps: what a force may keep, reported if it cannot be; the value that is meant;
 /// and what is made of both. `name` and `text` are as they were written.
 std::optional<Target> find_forceable(const Connecting& to, const Node& signal);
+std::optional<Target> find_forceable(const Connecting& to, Node&& signal) = delete;
 std::optional<Value> read_value(const Connecting& to, const Target& target, const Node& value);
 Stimulus stimulus_of(const Target& target, const Value& value, std::string_view name,
                      std::string_view text);

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft {
 
@@ -28,7 +31,44 @@ std::optional<Target> target_of(const Connecting& to, Change::Kind kind, const N
     return find_target(to, signal);
 }
 
+/// `T#2s`, `TOD#12:30:00` in ns.
+std::optional<st::Wide> read_time(const std::string& type, std::string_view text) {
+    using Kind = st::Type::Kind;
+    static constexpr std::pair<std::string_view, Kind> kinds[] = {
+        {"t", Kind::time},    {"time", Kind::time},           {"d", Kind::date},
+        {"date", Kind::date}, {"tod", Kind::clock},           {"time_of_day", Kind::clock},
+        {"dt", Kind::moment}, {"date_and_time", Kind::moment}};
+    for (const auto& [name, kind] : kinds)
+        if (type == name || (type == "l" + std::string(name))) return st::read_time(text, kind);
+    return {};
+}
+
 }  // namespace
+
+std::string as_in_a_program(std::string_view text, const Field& field) {
+    const bool has_type = !text.empty() && is_letter(text.front());
+    const std::size_t sharp = has_type ? text.find('#') : text.npos;
+    const std::string type = lower(text.substr(0, sharp == text.npos ? 0 : sharp));
+    const std::string_view bare = sharp == text.npos ? text : text.substr(sharp + 1);
+    if (field.type == Type::enumeration) {
+        const std::string_view value = bare.substr(bare.rfind('.') + 1);
+        for (const std::string_view name : field.names)
+            if (same_letters(name, value)) return std::string(name);
+    } else if (field.type == Type::boolean) {
+        const std::string truth = lower(bare);
+        if (truth == "true" || truth == "1") return "true";
+        if (truth == "false" || truth == "0") return "false";
+    } else if (field.type == Type::real) {
+        if (const auto real = st::read_real(bare)) return fmt::format("{}", *real);
+    } else if (field.unit == "ns") {
+        if (const auto time = read_time(type, bare)) return st::to_string(*time) + " ns";
+    } else {
+        const std::size_t sign = bare.starts_with('-') ? 1 : 0;
+        if (const auto whole = st::read_integer(bare.substr(sign)))
+            return st::to_string(sign == 0 ? *whole : -*whole);
+    }
+    return std::string(text);
+}
 
 std::vector<Change> Desk::changes(Change::Kind kind, const std::vector<Wanted>& wanted,
                                   Diagnostics& out) {
@@ -43,7 +83,8 @@ std::vector<Change> Desk::changes(Change::Kind kind, const std::vector<Wanted>& 
 /// The text that is recorded is read again as the same value.
 Change Desk::change(const Connecting& to, Change::Kind kind, const Wanted& wanted) {
     Change change{.kind = kind, .name = wanted.signal, .text = {}};
-    const auto target = target_of(to, kind, node_of(wanted.signal));
+    const Node node = node_of(wanted.signal);
+    const auto target = target_of(to, kind, node);
     if (!target) return change;
     if (kind == Change::Kind::lift_force) {
         change.live = target->live;
@@ -51,8 +92,10 @@ Change Desk::change(const Connecting& to, Change::Kind kind, const Wanted& wante
     }
     const std::string& unit = target->signal.unit;
     const bool lacks_unit = wanted.is_number && !unit.empty();
-    const auto value =
-        read_value(to, *target, node_of(lacks_unit ? wanted.value + " " + unit : wanted.value));
+    const std::string text = lacks_unit         ? wanted.value + " " + unit
+                             : wanted.is_number ? wanted.value
+                                                : as_in_a_program(wanted.value, target->field);
+    const auto value = read_value(to, *target, node_of(text));
     if (!value) return change;
     change.text = describe(*value, target->field.type, target->field.names, unit);
     if (kind == Change::Kind::set)
@@ -81,7 +124,8 @@ bool Desk::is_settable(const std::string& signal) {
     Diagnostics ignored;
     const Connecting to{loaded_.program, loaded_.linked.net, loaded_.linked.machine,
                         Reader(ignored)};
-    return find_settable(to, node_of(signal)).has_value();
+    const Node node = node_of(signal);
+    return find_settable(to, node).has_value();
 }
 
 }  // namespace lineshaft

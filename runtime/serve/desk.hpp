@@ -15,9 +15,13 @@ namespace lineshaft {
 /// A value as a client gives it.
 struct Wanted {
     std::string signal;
-    std::string value;       ///< as a program has it: `20 mm`, `true`
+    std::string value;       ///< as a program or the language has it: `20 mm`, `true`, `T#2s`
     bool is_number = false;  ///< in the signal's own unit
 };
+
+/// `Mode#fast`, `TRUE`, `16#FF`, `T#2s` of Structured Text as a program has such a value; any other
+/// text as it is.
+std::string as_in_a_program(std::string_view text, const Field& field);
 
 /// Makes changes of what clients want, by the rules of programs. For any thread.
 class Desk {

@@ -49,9 +49,11 @@ Exit format(const std::string& path, bool check) {
         spdlog::error("{} is left as it is: it is not in UTF-8", path);
         return Exit::wrong;
     }
-    const auto styled = is_structured_text(path) ? st::in_style(file) : std::nullopt;
+    const auto styled = is_structured_text(path) ? st::in_style(file, out) : std::nullopt;
+    if (!out.empty()) report(out, false);
     if (!styled) {
-        spdlog::error("{} is left as it is: something in it is no Structured Text", path);
+        spdlog::error("{} is left as it is: {}", path,
+                      out.empty() ? "it is no Structured Text" : "see above");
         return Exit::wrong;
     }
     if (*styled == file->text) return Exit::fine;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/utf8.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 
 namespace lineshaft::st {
@@ -66,9 +68,12 @@ class Style {
         for (const Piece& piece : pieces_)
             if (const std::string word = piece.word(); word.starts_with("END_"))
                 closed_.push_back(word.substr(4));
+        for (std::size_t i = 1; i < pieces_.size(); ++i)
+            if (const std::string word = pieces_[i - 1].word(); word == "GOTO" || word == "JMP")
+                labels_.push_back(pieces_[i].word());
     }
-    /// Empty: there is something between the tokens.
-    std::optional<std::string> write();
+    /// Empty: there is something between the tokens, which goes to `out`.
+    std::optional<std::string> write(Diagnostics& out);
 
   private:
     struct Open {
@@ -82,6 +87,12 @@ class Style {
         return text_.substr(begin, pieces_[i].place.begin - begin);
     }
     bool in_case() const { return !open_.empty() && open_.back().word == "CASE"; }
+    /// The colon of a CASE, or of a label that is jumped to.
+    bool ends_label(std::size_t i) const {
+        const bool is_jumped_to =
+            i == begun_ + 1 && std::ranges::find(labels_, pieces_[begun_].word()) != labels_.end();
+        return pieces_[i].is(Word::colon) && brackets_ == 0 && (in_case() || is_jumped_to);
+    }
     bool is_spaced(std::size_t i) const;
     bool is_label(std::size_t i) const;
     bool opens(const std::string& word) const;
@@ -89,13 +100,16 @@ class Style {
     std::size_t indent_of(std::size_t i);
     void take(std::size_t i);
     void close(const std::string& word);
+    void refuse(std::size_t i, Diagnostics& wrong) const;
 
     std::string_view text_;
     std::vector<Piece> pieces_;
     std::string end_;
     std::vector<std::string> closed_;  ///< words that some END_... ends
+    std::vector<std::string> labels_;  ///< that some GOTO or JMP names
     std::vector<Open> open_;
     int brackets_ = 0;
+    std::size_t begun_ = 0;   ///< the piece that began the last statement
     bool begins_ = true;      ///< a statement or a declaration
     bool is_header_ = false;  ///< which the line ends
 };
@@ -200,17 +214,18 @@ void Style::take(std::size_t i) {
         return;
     }
     if (begins_ && word == "ELSE" && in_case()) open_.back().has_label = false;
-    if (in_case() && piece.is(Word::colon) && brackets_ == 0) {
-        open_.back().has_label = true;
+    if (ends_label(i)) {
+        if (in_case()) open_.back().has_label = true;
         begins_ = true;
         return;
     }
+    if (begins_) begun_ = i;
     begins_ =
         is_one_of(piece, {Word::semicolon, Word::then_, Word::do_, Word::else_, Word::begin_}) ||
         (piece.is(Word::of_) && in_case());
 }
 
-std::optional<std::string> Style::write() {
+std::optional<std::string> Style::write(Diagnostics& wrong) {
     std::string out;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         std::string gap(between(i));
@@ -219,7 +234,10 @@ std::optional<std::string> Style::write() {
         std::erase_if(left, [](char c) {
             return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f';
         });
-        if (!left.empty() && left != "#") return {};
+        if (!left.empty() && left != "#" && left != utf8_byte_order_mark) {
+            refuse(i, wrong);
+            return {};
+        }
         if (i == 0 || lines > 0) {
             const bool is_apart = lines > 1 && i > 0;
             if (i > 0) out += is_apart ? end_ + end_ : end_;
@@ -228,8 +246,7 @@ std::optional<std::string> Style::write() {
             const auto blanks = gap.size() - left.size();
             out += std::string(std::max<std::size_t>(blanks, 1), ' ');
         } else if (left.empty() && is_spaced(i)) {
-            const bool is_label_colon = pieces_[i].is(Word::colon) && in_case() && brackets_ == 0;
-            if (!is_label_colon) out += ' ';
+            out += ends_label(i) ? "" : " ";
         }
         out += left;
         out += pieces_[i].text();
@@ -240,6 +257,14 @@ std::optional<std::string> Style::write() {
     rest.erase(0, std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
     if (!rest.empty()) return {};
     return out.empty() ? out : out + end_;
+}
+
+/// Of what stands before a piece and is none.
+void Style::refuse(std::size_t i, Diagnostics& wrong) const {
+    const std::uint32_t end = i == 0 ? 0 : pieces_[i - 1].place.end;
+    const auto begin = static_cast<std::uint32_t>(text_.find_first_not_of(" \t\r\n\f", end));
+    wrong.add(code::character_of_no_word, Place{pieces_[i].place.source, begin, begin + 1}.mark(),
+              "what stands here is left out by its {IF ...}, and is not brought into the style");
 }
 
 /// Nothing but blanks and ends of lines differs.
@@ -257,11 +282,11 @@ bool is_same_code(const std::string& a, const std::string& b, const std::string&
 
 }  // namespace
 
-std::optional<std::string> in_style(const std::shared_ptr<const SourceFile>& file) {
-    Diagnostics out;
+std::optional<std::string> in_style(const std::shared_ptr<const SourceFile>& file,
+                                    Diagnostics& out) {
     const Tokens all = read_tokens(file, out, SourceKind::tests);
     if (!out.empty()) return {};
-    auto styled = Style(*file, pieces_of(all)).write();
+    auto styled = Style(*file, pieces_of(all)).write(out);
     if (styled && !is_same_code(file->text, *styled, file->path)) styled.reset();
     return styled;
 }

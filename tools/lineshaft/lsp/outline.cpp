@@ -243,7 +243,8 @@ Json folding_ranges(Session& session, const Json& params) {
 Json formatting(Session& session, const Json& params) {
     const auto where = asked(session, params);
     if (!where || !is_structured_text(where->path)) return nullptr;
-    const auto styled = st::in_style(source_of(*where));
+    Diagnostics untold;
+    const auto styled = st::in_style(source_of(*where), untold);
     if (!styled || *styled == where->text) return Json::array();
     const Json whole = Text(where->text).range(0, where->text.size(), session.encoding);
     return Json::array({{{"range", whole}, {"newText", *styled}}});
