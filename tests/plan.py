@@ -213,6 +213,22 @@ def check_dialogue(lineshaft):
         yield f"dialogue: {header!r}, {row!r}, exit code {process.returncode}"
 
 
+def check_times_of_curves(lineshaft):
+    """A path's duration is that of its samples; the file may stand behind the limits."""
+    limits = ["--limits", "100,1000,20000", "80,1500,50000"]
+    points = ((0, 0), (10, 5), (20, -5), (30, 8), (50, 0), (40, -20), (5, -12))
+    for curve in ("line", "arc", "spline", "cubic"):
+        rows = "".join(f"{x},{y},{curve},{x + 3},{y - 4}\n" for x, y in points)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "points.csv"
+            file.write_text("position1,position2,curve,border1,border2\n" + rows)
+            summary, samples = (run(lineshaft, "--path", *more, *limits, str(file))[1].splitlines()
+                                for more in ([], ["--every", "0.0005"]))
+        seconds = [float(rows[-1].split(",")[column]) for rows, column in ((summary, -1), (samples, 1))]
+        if not -1e-4 < seconds[1] - seconds[0] < 1.5e-3:
+            yield f"--path, {curve}: {seconds[0]} s, and samples until {seconds[1]} s"
+
+
 def check_paths(lineshaft):
     """A line in many points takes the time of the line; corners within a deviation, splines, bulk, what is wrong."""
     limits = ["--limits", "100,1000,10000"]
@@ -241,6 +257,7 @@ def check_paths(lineshaft):
         yield f"--path --deviation 2 is {off} away"
     if max(abs(x[4]) for x in samples) > 1000 * (1 + 1e-9) or max(abs(x[3]) for x in samples) > 100 * (1 + 1e-9):
         yield "--path --every leaves the limits"
+    yield from check_times_of_curves(lineshaft)
     for text, message in (("a\n1\n", "1: error: the column 'a' is not known"),
                           ("position1\n1\nx\n", "3: error: 'x' in column position1 is not a number"),
                           ("position1,curve\n0,\n1,round\n", "3: error: the curve 'round' is not line, arc, spline or cubic")):

@@ -330,11 +330,18 @@ MotionError Axis::plan_profile(const Context& context, const Request& request, c
     constexpr double nanosecond = 1e-9;
     const Dynamics d = defaults();
     const double v = d.acceleration * nanosecond, a = d.jerk * nanosecond;
-    const auto apart = [](double x, double y, double most) { return !(std::abs(x - y) <= most); };
-    if (apart(begin.position, from.state.position, 1e-9 * (1 + std::abs(begin.position))) ||
-        apart(begin.velocity, from.state.velocity, v) ||
-        apart(begin.acceleration, from.state.acceleration, a) || apart(end.acceleration, 0, a) ||
-        (of_position && apart(end.velocity, 0, v)))
+    const auto differs = [&](CurveFault what, double has, double due, double most) {
+        if (std::abs(has - due) <= most) return false;
+        shortage = {what, due, has};
+        return true;
+    };
+    const MotionState& axis = from.state;
+    if (differs(CurveFault::none, begin.position, axis.position,
+                1e-9 * (1 + std::abs(begin.position))) ||
+        differs(CurveFault::velocity, begin.velocity, axis.velocity, v) ||
+        differs(CurveFault::acceleration, begin.acceleration, axis.acceleration, a) ||
+        differs(CurveFault::acceleration, end.acceleration, 0, a) ||
+        (of_position && differs(CurveFault::velocity, end.velocity, 0, v)))
         return MotionError::out_of_range;
     if (!next.keeps(d, cam)) return MotionError::sync_limits;
     if (!may_follow(next, cam, from)) return MotionError::software_limit;

@@ -42,6 +42,36 @@ double time_since(const MotionState& now, double position, double most) {
     return high;
 }
 
+/// The period of a cam that begins, in the direction of its master, where it is met.
+double period_at_sync(const SyncMotion& sync, const Cam& table) {
+    constexpr double nearly = 1e-9;
+    const double x = sync.coupling.master_scaling * sync.sync_x + sync.cam_origin;
+    const double periods = (x - table.begin()) / table.length(), nearest = std::round(periods);
+    if (std::abs(periods - nearest) > nearly) return std::floor(periods);
+    return sync.coupling.master_scaling * sync.direction > 0 ? nearest : nearest - 1;
+}
+
+/// At which of its ends a cam that is not periodic is over.
+void find_end(SyncMotion& sync, const MotionState& leader, const Cam& table) {
+    const double x = sync.coupling.master_scaling * leader.position + sync.cam_origin;
+    sync.last_periods = table.periods(x);
+    sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
+    if (!table.periodic && sync.coupling.stays != 0)
+        sync.last_periods = -static_cast<double>(sync.ends_at);
+}
+
+/// A cam whose place the master has passed in its turn is met in the next one.
+void meet_in_next_turn(SyncMotion& sync, const MotionState& leader, double turn, const Cam& table) {
+    const Coupling& c = sync.coupling;
+    const double way = sync.direction * turn * (std::floor(-sync.distance(leader) / turn) + 1);
+    const double before = sync.law_at(leader.position, table).y;
+    sync.sync_x += way;
+    sync.cam_origin -= c.master_scaling * way;
+    if (!CamTableId::of(c.cam).slave_absolute || c.start_mode == StartMode::relative)
+        sync.cam_rise += before - sync.law_at(leader.position, table).y;
+    find_end(sync, leader, table);
+}
+
 }  // namespace
 
 bool is_synchronous(Command command) {
@@ -115,11 +145,16 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     if (is_cam && c.start_mode == StartMode::direct) return MotionError::none;
     if (is_cam && c.start_mode == StartMode::ramp_in) return ramp_in(from, leader, table, at);
     if (sync.is_on_law(from, leader, table)) return MotionError::none;
-    const double left = sync.distance(leader);
+    double left = sync.distance(leader);
     const bool begins_here = is_cam && std::abs(left) <= sum_rounding * std::abs(leader.position);
     if (begins_here && sync.is_beside_law(from, leader, table)) return MotionError::none;
     if (begins_here && !CamTableId::of(c.cam).master_absolute)
         return ramp_in(from, leader, table, at);
+    if (!(left > 0) && is_cam && !table.periodic && leading.modulo &&
+        CamTableId::of(c.cam).master_absolute) {
+        meet_in_next_turn(sync, leader, leading.period, table);
+        left = sync.distance(leader);
+    }
     if (!(left > 0)) return MotionError::sync_passed;
     if (c.start_distance == 0 || left <= c.start_distance)
         return approach(context, from, table, at);
@@ -176,10 +211,7 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
         sync.cam_rise += from.position - sync.law_at(leader.position, table).y;
     sync.meet(leader, (c.master_sync - sync.cam_origin) / c.master_scaling,
               table.periodic ? table.length() / std::abs(c.master_scaling) : 0);
-    const double x = c.master_scaling * leader.position + sync.cam_origin;
-    sync.last_periods = table.periods(x);
-    sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
-    if (!table.periodic && c.stays != 0) sync.last_periods = -static_cast<double>(sync.ends_at);
+    find_end(sync, leader, table);
     return MotionError::none;
 }
 
@@ -325,10 +357,18 @@ void Axis::follow_law(const Context& context) {
     if (sync.law == Law::cammed && table.points.empty())
         return fail_before(context, MotionError::no_cam);
     if (sync.stage == Stage::waiting && !leaves(context, leader, table)) return;
-    if (sync.stage == Stage::approaching) follow_approach(context, leader, table);
+    if (sync.stage == Stage::approaching) {
+        follow_approach(context, leader, table);
+        if (sync.stage == Stage::in_sync && table.periodic)
+            sync.last_periods = period_at_sync(sync, table);
+    }
     if (sync.stage == Stage::in_transition &&
-        gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true))
+        gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true)) {
         sync.stage = Stage::in_sync;
+        if (table.periodic)
+            sync.last_periods =
+                table.periods(sync.coupling.master_scaling * sync.led.position + sync.cam_origin);
+    }
     if (doing == Doing::following_axes && sync.stage == Stage::in_sync)
         follow_in_sync(context, leader, table);
     sync.looked = {scan_time};
@@ -399,16 +439,19 @@ void Axis::follow_in_sync(const Context& context, const MotionState& leader, con
 
 /// EndOfProfile: the command sees by the number that a cam has ended.
 void Axis::look_for_end(const Context& context, const MotionState& leader, const Cam& table) {
-    const double x = sync.coupling.master_scaling * leader.position + sync.cam_origin;
+    const double scaling = sync.coupling.master_scaling;
+    const double x = scaling * leader.position + sync.cam_origin;
+    const double slack = sum_rounding * (std::abs(x) + std::abs(sync.cam_origin));
     const double first = table.begin(), last = table.points.back().x;
     if (table.periodic) {
         const double periods = table.periods(x), before = sync.last_periods;
+        const double way = periods > before ? 1 : -1;
+        const double end = first + table.length() * (way > 0 ? periods : periods + 1);
+        const bool comes_from_there = way * scaling * leader.velocity < 0;
+        if (periods == before || (comes_from_there && std::abs(x - end) <= slack)) return;
         sync.last_periods = periods;
-        if (periods == before) return;
-        const double end = first + table.length() * (periods > before ? periods : periods + 1);
         return end_cam(context, leader, end, table.at(end));
     }
-    const double slack = sum_rounding * (std::abs(x) + std::abs(sync.cam_origin));
     CurvePoint behind = table.last();
     behind.y = table.points.back().y;
     if (sync.coupling.stays != 0) {

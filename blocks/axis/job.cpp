@@ -21,6 +21,18 @@ std::string text_of(MotionError error, const Shortage& shortage, std::string_vie
                        unit, per[quantity]);
 }
 
+std::string text_of_profile(const Shortage& shortage, std::string_view unit) {
+    if (shortage.needed == shortage.allowed || shortage.limit > CurveFault::acceleration)
+        return std::string(text_of(MotionError::out_of_range));
+    const auto quantity = static_cast<std::size_t>(shortage.limit);
+    constexpr std::string_view names[] = {"at the position", "with the velocity",
+                                          "with the acceleration"};
+    constexpr std::string_view per[] = {"", "/s", "/s^2"};
+    return fmt::format("the profile begins or ends {} {:.5g} {}{}, where {:.5g} {}{} is due",
+                       names[quantity], shortage.allowed, unit, per[quantity], shortage.needed,
+                       unit, per[quantity]);
+}
+
 void JobState::tell(Progress how, MotionError why, std::int64_t by_task, std::int64_t in_scan) {
     if (told_by != by_task || told_in != in_scan) before = progress;
     progress = how;

@@ -152,6 +152,9 @@ constexpr std::string_view text_of(MotionError error) {
 
 /// The same, of sync_limits with the limit and by how much it is short, in the unit of the axis.
 std::string text_of(MotionError error, const Shortage& shortage, std::string_view unit);
+/// Why a profile is out of range: `needed` is what is due at its beginning or end, `allowed` what
+/// it has there.
+std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 
 /// Of MC_Home. `other`: there is no such mode. `signalled`: it was `on_signal`, and the signal has
 /// come.
@@ -225,7 +228,7 @@ struct JobState {
 /// A job for an axis.
 struct Job : JobState {
     Request request;
-    Shortage shortage;      ///< of sync_limits
+    Shortage shortage;      ///< of sync_limits, or text_of_profile
     double told_value = 0;  ///< what the axis answers beside the progress
     Ahead ahead;            ///< in the queue
 };

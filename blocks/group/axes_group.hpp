@@ -113,7 +113,7 @@ struct AxesGroup {
     void hold(const Context& context, GroupJob& job);
     void begin_reset(const Context& context, GroupJob& job);
     void finish_reset(const Context& context);
-    void brake(const PathLimit& gently = no_path_limit);
+    void brake(const PathLimit& limit = no_path_limit);
     void fail(const Context& context, MotionError why);
     void abort_all(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Holder& ended, Progress how,

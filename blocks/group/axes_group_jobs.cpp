@@ -223,8 +223,8 @@ void AxesGroup::finish_reset(const Context& context) {
     end(context, resetter, Progress::done);
 }
 
-void AxesGroup::brake(const PathLimit& gently) {
-    path.halt(gently);
+void AxesGroup::brake(const PathLimit& limit) {
+    path.halt(limit);
     braking = 1;
 }
 

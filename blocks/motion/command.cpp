@@ -92,7 +92,10 @@ std::string CommandBlock::why(const Context& context, const NameOf& name_of) con
     const std::string hops = error_id == MotionError::master_loop ? loop(context, name_of) : "";
     if (!hops.empty() || axis == nowhere) return hops;
     const AxisUnit unit = context.instance<Axis>(axis).unit;
-    return text_of(error_id, job.shortage, axis_unit_names[static_cast<std::size_t>(unit)]);
+    const std::string_view name = axis_unit_names[static_cast<std::size_t>(unit)];
+    if (error_id == MotionError::out_of_range && is_profile(job.request.command))
+        return text_of_profile(job.shortage, name);
+    return text_of(error_id, job.shortage, name);
 }
 
 std::string CommandBlock::loop(const Context& context, const NameOf& name_of) const {

@@ -161,7 +161,8 @@ void ReadActualVelocity::scan(const Scan&, const Context& context) {
 
 std::span<const Field> ReadParameter::fields() {
     static const auto table = read_table({
-        input("ParameterNumber", &ReadParameter::number, "", "1..17, see blocks/motion/README.md"),
+        input("ParameterNumber", &ReadParameter::number, "",
+              "1: position; 10, 11: measured velocity, velocity; and those of MC_WriteParameter"),
         output("Value", &ReadParameter::value, "", "in the unit of the axis, and seconds"),
     });
     return table;

@@ -28,7 +28,8 @@ std::span<const Field> WriteParameter::fields() {
     using B = WriteParameter;
     static const auto table = pin::table(
         {input("ParameterNumber", &B::pins, &Request::parameter, "",
-               "1..17, see blocks/motion/README.md"),
+               "2, 3: highest, lowest_position; 4, 5: software_limits; 9, 13, 15, 17: "
+               "default_velocity, _acceleration, _deceleration, _jerk"),
          input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds"),
          pin::execution_mode()},
         pin::done("the parameter is set"));

@@ -54,9 +54,11 @@ struct SwitchedCam::Beyond {
     /// that comes to it has passed it, one that leaves it has when it goes on.
     double passing(bool into_cam, double period) const {
         if (way() == 0) return not_passed;
-        const double from = period > 0 ? within_period(first, period) : first;
-        double ahead = way() > 0 ? -from : from;
-        if (period > 0 && (ahead < 0 || (ahead == 0 && into_cam))) ahead += period;
+        double ahead = way() > 0 ? -first : first;
+        if (period > 0) {
+            ahead = std::fmod(ahead, period);
+            if (ahead < 0 || (ahead == 0 && into_cam)) ahead += period;
+        }
         const bool is_there = into_cam ? ahead > 0 && ahead <= std::abs(way())
                                        : ahead >= 0 && ahead < std::abs(way());
         return is_there ? part_of(ahead) : not_passed;

@@ -180,9 +180,10 @@ void Phasing::scan(const Scan& now, const Context& context) {
 namespace {
 
 std::vector<Field> profile_table(std::string_view reference, std::string_view scale,
-                                 std::string_view unit, const Field& first_output) {
+                                 std::string_view unit, std::string_view of_table,
+                                 const Field& first_output) {
     return pin::table(
-        {in_out(reference, &Profile::table, CamTable::type, "points over time"),
+        {in_out(reference, &Profile::table, CamTable::type, of_table),
          coupled("TimeScale", &C::master_scaling, "", "time = this times the table's; above 0"),
          coupled(scale, &C::slave_scaling, "", "of the table's values"),
          coupled("Offset", &C::slave_offset, unit, "of the scaled values"), pin::buffer_mode()},
@@ -193,6 +194,8 @@ std::vector<Field> profile_table(std::string_view reference, std::string_view sc
 
 std::span<const Field> PositionProfile::fields() {
     static const auto fields = profile_table("TimePosition", "PositionScale", "{Axis}",
+                                             "points over time: from the axis' position, velocity "
+                                             "and acceleration to rest without any",
                                              pin::done("the profile has come to its end"));
     return fields;
 }
@@ -200,6 +203,8 @@ std::span<const Field> PositionProfile::fields() {
 std::span<const Field> VelocityProfile::fields() {
     static const auto fields =
         profile_table("TimeVelocity", "VelocityScale", "{Axis}/s",
+                      "points over time: from the axis' velocity and acceleration to no "
+                      "acceleration; where its default_jerk is 0 that may jump",
                       pin::reached("ProfileCompleted", "the last velocity is kept"));
     return fields;
 }
@@ -207,6 +212,8 @@ std::span<const Field> VelocityProfile::fields() {
 std::span<const Field> AccelerationProfile::fields() {
     static const auto fields =
         profile_table("TimeAcceleration", "AccelerationScale", "{Axis}/s^2",
+                      "points over time: from the axis' acceleration to none; where its "
+                      "default_jerk is 0 that may jump",
                       pin::reached("ProfileCompleted", "the velocity at its end is kept"));
     return fields;
 }

@@ -71,7 +71,8 @@ bool stops_short(const Path& path, std::span<const PathPiece> ring) {
 }
 
 PathOutlook outlook_of(const Path& path, std::span<const PathPiece> ring) {
-    return {stretches_of(path, ring), {ring, path.first, path.count}, factor_of(path), path.gently};
+    return {
+        stretches_of(path, ring), {ring, path.first, path.count}, factor_of(path), path.braking};
 }
 
 /// A course that ends where not all of the path is over is looked at again as soon as it comes down
@@ -81,6 +82,18 @@ void note_leg(Path& path, std::span<const PathPiece> ring) {
     path.stale = stops_short(path, ring);
     path.fresh = path.leg.course.count > 0 && path.leg.goal + 1 < path.stretches &&
                  path.leg.ripe > at_least * path.leg.duration();
+}
+
+/// The halt that was found, or a harder one that is over sooner; none where what is planned is.
+IntoBoxes halt_harder(const Path& path, const PathOutlook& outlook, const MotionState& from,
+                      IntoBoxes found, PathLeg& leg) {
+    constexpr double worth = 0.999, infinite = std::numeric_limits<double>::infinity();
+    const double otherwise = found == IntoBoxes::none ? infinite : leg.duration();
+    const double left = path.leg.end_velocity() == 0 ? path.leg.duration() - path.time : infinite;
+    const IntoBoxes harder =
+        plan_harder_halt(outlook, from, place_of(path), worth * std::min(otherwise, left), leg);
+    if (harder != IntoBoxes::none) return harder;
+    return left < otherwise ? IntoBoxes::none : found;
 }
 
 /// Plans anew from now; where that cannot be, what was planned goes on.
@@ -93,9 +106,11 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     const PathOutlook outlook = outlook_of(path, ring);
     PathLeg leg;
     IntoBoxes into = IntoBoxes::soon;
-    if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.gently, leg))
+    if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, leg))
         into =
             path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
+    if (path.halted && brakes_harder(outlook, base))
+        into = halt_harder(path, outlook, from, into, leg);
     if (into == IntoBoxes::none) return false;
     if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg);
     path.leg = leg;
@@ -140,7 +155,7 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
     }
     look_back_where_changed(path, ring);
     const PathOutlook outlook = outlook_of(path, ring);
-    path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.gently, path.leg);
+    path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, path.leg);
     if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg);
     note_leg(path, ring);
 }
@@ -331,13 +346,13 @@ void Path::set_override(double factor) {
 }
 
 void Path::halt(const PathLimit& limit) {
-    gently = limit;
+    braking = limit;
     halted = true;
     stale = true;
 }
 
 void Path::resume() {
-    gently = no_path_limit;
+    braking = no_path_limit;
     halted = false;
     stale = true;
 }

@@ -41,7 +41,7 @@ struct Path {
     double total = 0;             ///< length of all pieces appended [u]
     double time = 0;              ///< since the leg under way began [s]
     double override = 1;          ///< factor of the velocity, >= 0
-    PathLimit gently = no_path_limit;  ///< of a halt
+    PathLimit braking = no_path_limit;  ///< of a halt
     bool halted = false;
     bool stale = false;  ///< what was planned is to be planned anew
     bool fresh = false;  ///< stretches have changed since the leg under way was planned
@@ -58,11 +58,12 @@ struct Path {
     /// `factor` >= 0; 0 is a halt that ends with another factor.
     void set_override(double factor);
 
-    /// Brakes to standstill on the path as soon as the limits of the pieces allow, and acceleration
-    /// and jerk of `gently` where they leave room before the path ends; the rest of the path stays,
-    /// and `resume` goes on. MC_GroupInterrupt and MC_GroupContinue. A stop is a halt with `clear`
-    /// at standstill.
-    void halt(const PathLimit& gently = no_path_limit);
+    /// Brakes to standstill on the path as soon as the limits of the pieces allow, or with
+    /// acceleration and jerk of `limit` instead of those along the path: gentler ones where there
+    /// is room for that before the path ends. The rest of the path stays, and `resume` goes on,
+    /// after standstill where a harder halt is under way. MC_GroupInterrupt and MC_GroupContinue. A
+    /// stop is a halt with `clear` at standstill.
+    void halt(const PathLimit& limit = no_path_limit);
     void resume();
 
     /// Forgets all pieces. Only at standstill.

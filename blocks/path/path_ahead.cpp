@@ -81,13 +81,25 @@ double ripe_at(const PathCourse& course) {
     return i < course.count ? course.phases[i].begin : course.duration;
 }
 
+bool is_given(double halt) {
+    return halt < no_path_limit.acceleration;
+}
+
+/// Along the path, with the acceleration and jerk of a halt.
+PathLimit braking_limit(PathLimit path, const PathLimit& halt) {
+    if (is_given(halt.acceleration)) path.acceleration = halt.acceleration;
+    if (is_given(halt.jerk)) path.jerk = halt.jerk;
+    return path;
+}
+
 /// The least that pieces on a way leave along their tangents.
-PathLimit least_on_way(const PathOutlook& outlook, double from, double to) {
+PathLimit least_on_way(const PathOutlook& outlook, double from, double to,
+                       const PathLimit& halt = no_path_limit) {
     PathLimit out = no_path_limit;
     for (PathPieces on = from_place(outlook.pieces, from); on.first < on.count; ++on.first) {
         const PathPiece& piece = on[on.first];
         if (piece.begin >= to) break;
-        out = least_of(out, piece.limits.path);
+        out = least_of(out, braking_limit(piece.limits.path, halt));
         for (std::size_t i = 0; i < most_path_axes; ++i) {
             const double share = piece.bounds[i].tangent;
             const PathLimit& axis = piece.limits.axes[i];
@@ -108,7 +120,7 @@ std::uint64_t stretch_at(const ConstPathStretches& stretches, double place) {
 
 /// A ramp to a velocity, and what goes on from there.
 bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, double velocity,
-              const PathLimit& limit, PathLeg& out) {
+              const PathLimit& limit, PathLeg& out, const PathLimit& braking = no_braking) {
     VelocityRamp ramp;
     if (ramp.plan(from.velocity, from.acceleration, velocity, limit.acceleration, limit.jerk) !=
         PlanResult::ok)
@@ -127,7 +139,7 @@ bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, 
     leg.goal = goal;
     std::array<double, PathCourse::most_phases> quotients{};
     if (leg.course.count == 0 ||
-        !keeps_limits(from_place(outlook.pieces, base), leg.course, base, quotients))
+        !keeps_limits(from_place(outlook.pieces, base), leg.course, base, quotients, braking))
         return false;
     if (velocity > 0) {
         Chain chain;
@@ -199,6 +211,32 @@ IntoBoxes plan_into_boxes(const PathOutlook& outlook, const MotionState& from, d
             slowest = std::min(slowest, stretches[k].box.velocity);
         for (const double share : {1.0, 0.5, 0.0})
             if (ends_with(share * outlook.factor * slowest, no_path_limit)) return found;
+    }
+    return IntoBoxes::none;
+}
+
+bool brakes_harder(const PathOutlook& outlook, double base) {
+    const PathPieces pieces = from_place(outlook.pieces, base);
+    const PathLimit own = pieces[pieces.first].limits.path;
+    const PathLimit halt = braking_limit(own, outlook.halt);
+    return halt.acceleration > own.acceleration || halt.jerk > own.jerk;
+}
+
+IntoBoxes plan_harder_halt(const PathOutlook& outlook, const MotionState& from, double base,
+                           double within, PathLeg& out) {
+    const PathLimit braking = braking_limit(no_braking, outlook.halt);
+    const double stop = way_to(from, 0, least_on_way(outlook, base, base, outlook.halt));
+    const double to = base + (std::isfinite(stop) ? stop : 0);
+    const PathLimit all = least_on_way(outlook, base, to, outlook.halt);
+    for (const double part : {1.0, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1}) {
+        PathLeg leg;
+        const PathLimit limit{all.velocity, part * all.acceleration, part * all.jerk};
+        if (!try_ramp(outlook, from, base, 0, limit, leg, braking)) continue;
+        for (std::uint64_t k = outlook.stretches.first; k < leg.goal; ++k)
+            if (outlook.stretches[k].joint == 0) return IntoBoxes::none;
+        if (!(leg.duration() < within)) return IntoBoxes::none;
+        out = leg;
+        return part == 1 ? IntoBoxes::soon : IntoBoxes::late;
     }
     return IntoBoxes::none;
 }

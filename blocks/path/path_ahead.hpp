@@ -12,7 +12,7 @@ struct PathOutlook {
     ConstPathStretches stretches;
     PathPieces pieces;
     double factor = 1;  ///< of the velocities
-    PathLimit halt;     ///< acceleration and jerk of a halt
+    PathLimit halt;     ///< acceleration and jerk of a halt; none: those of the pieces
 };
 
 /// Makes of a leg and those that would follow it one that is sooner, where curves leave more than
@@ -28,5 +28,13 @@ enum class IntoBoxes : std::int64_t { none, late, soon };
 /// that where `factor` is 0. `out` is unchanged where there is none.
 IntoBoxes plan_into_boxes(const PathOutlook& outlook, const MotionState& from, double base,
                           PathLeg& out);
+
+/// The halt may come to more along the path than the piece at a place.
+bool brakes_harder(const PathOutlook& outlook, double base);
+
+/// A halt with acceleration and jerk of `halt` where those are more than the pieces', and within
+/// all other limits. `out` is unchanged where there is none that is over sooner than `within` [s].
+IntoBoxes plan_harder_halt(const PathOutlook& outlook, const MotionState& from, double base,
+                           double within, PathLeg& out);
 
 }  // namespace lineshaft

@@ -238,7 +238,8 @@ PathFault arc_through(const PathVector& from, const PathVector& border, const Pa
     const PathVector chord = difference(to, from), way = difference(border, from);
     const double length = size_of(chord), part = size_of(way);
     if (!std::isfinite(length) || !std::isfinite(part)) return PathFault::not_finite;
-    if (length == 0 || part == 0) return PathFault::no_length;
+    if (length == 0 && part == 0) return PathFault::no_length;
+    if (length == 0 || part == 0) return PathFault::no_arc;
     const PathVector e = unit(chord);
     const PathVector off = upright(way, e);
     const double height = size_of(off);
@@ -305,7 +306,7 @@ PathFault arc_of_radius(const PathVector& from, const PathVector& to, const Path
     if (!finite(from) || !finite(to) || !finite(normal)) return PathFault::not_finite;
     const PathVector chord = in_space(difference(to, from));
     const double length = size_of(chord), radius = size_of(in_space(normal));
-    if (!(length > 0)) return PathFault::no_length;
+    if (!(length > 0)) return radius == 0 ? PathFault::no_length : PathFault::no_arc;
     const PathVector e = unit(chord), given = unit(in_space(normal));
     const double most = rounding_of(radius, rounding);
     if (!finite(given) || std::abs(product(given, e)) * radius > most) return PathFault::no_arc;

@@ -72,9 +72,9 @@ struct PathCurve {
 
 enum class PathFault : std::int64_t {
     none,
-    not_finite,          ///< a number is NaN or infinite, or a quotient is beyond a double
-    no_length,           ///< start and end are one point
-    no_arc,              ///< the three points lie on one line, or the centre is not equally far
+    not_finite,  ///< a number is NaN or infinite, or a quotient is beyond a double
+    no_length,   ///< start and end are one point
+    no_arc,      ///< the three points lie on one line, or two are one, or the centre is not as far
     limit_not_positive,  ///< a limit is zero, negative or not finite
     not_joined,          ///< it does not begin where the piece before ends
     full,                ///< no room for one more piece

@@ -32,8 +32,11 @@ struct PathSizes {
 /// A phase where it is on one piece.
 class PhaseOnPiece {
   public:
-    PhaseOnPiece(const PathPiece& on, const PathPhase& of, double along)
-        : piece(on), phase(of), offset(along) {}
+    PhaseOnPiece(const PathPiece& on, const PathPhase& of, double along, const PathLimit& braking)
+        : piece(on), phase(of), offset(along), path(on.limits.path) {
+        path.acceleration = std::max(path.acceleration, braking.acceleration);
+        path.jerk = std::max(path.jerk, braking.jerk);
+    }
 
     Instant at(double t) const;
     double quotient(const Instant& a, const Instant& b, int deep) const;
@@ -41,7 +44,8 @@ class PhaseOnPiece {
   private:
     const PathPiece& piece;
     const PathPhase& phase;
-    double offset;  ///< from the phase's positions to lengths of the piece's curve [u]
+    double offset;   ///< from the phase's positions to lengths of the piece's curve [u]
+    PathLimit path;  ///< along it
 
     PathSizes sizes(const Instant& a, const Instant& b) const;
     bool goes_back(const Instant& a, const Instant& b) const;
@@ -88,13 +92,12 @@ bool PhaseOnPiece::goes_back(const Instant& a, const Instant& b) const {
         const double energy = p.velocity * p.velocity - square / std::abs(phase.slope);
         least = phase.slope == 0 ? p.velocity - square / (2 * p.jerk) : energy < 0 ? -1e300 : 0;
     }
-    return least < -rounding * piece.limits.path.velocity;
+    return least < -rounding * path.velocity;
 }
 
 double PhaseOnPiece::of_path(const PathSizes& most) const {
-    const PathLimit& limit = piece.limits.path;
-    return std::max({most.velocity / limit.velocity, most.acceleration / limit.acceleration,
-                     most.jerk / limit.jerk});
+    return std::max({most.velocity / path.velocity, most.acceleration / path.acceleration,
+                     most.jerk / path.jerk});
 }
 
 double acceleration_rate(const PathBound& x, const PathSizes& s) {
@@ -145,7 +148,7 @@ double PhaseOnPiece::bound(const Instant& a, const Instant& b) const {
     const PathSizes most = sizes(a, b);
     double out = of_path(most);
     if (piece.curve.kind == PathCurveKind::corner) {
-        PathLimit limit = piece.limits.path;
+        PathLimit limit = path;
         limit.velocity = no_path_limit.velocity;
         out = std::max(out, quotient_of(size_in_space(a), size_in_space(b),
                                         bound_of_corner(piece.curve), most, off, limit));
@@ -167,7 +170,7 @@ double PhaseOnPiece::quotient(const Instant& a, const Instant& b, int deep) cons
 }  // namespace
 
 bool keeps_limits(const PathPieces& pieces, const PathCourse& course, double base,
-                  std::span<double> quotients) {
+                  std::span<double> quotients, const PathLimit& braking) {
     constexpr int deepest = 5;
     constexpr double rounding = 1e-9;
     bool all = true;
@@ -183,7 +186,7 @@ bool keeps_limits(const PathPieces& pieces, const PathCourse& course, double bas
             const double until = is_over                 ? lasts
                                  : left > way * rounding ? time_at_way(phase, lasts, left)
                                                          : 0;
-            const PhaseOnPiece part(pieces[k], phase, base - pieces[k].begin);
+            const PhaseOnPiece part(pieces[k], phase, base - pieces[k].begin, braking);
             if (until > t)
                 worst = std::max(worst, part.quotient(part.at(t), part.at(until), deepest));
             t = std::max(t, until);

@@ -56,7 +56,8 @@ void read_answer(const Reader& read, const Node& name, const Node& value, Expect
     const auto part = [&](std::size_t from, std::size_t to) {
         Node node = name;
         node.text = name.text.substr(from, to == name.text.npos ? to : to - from);
-        node.mark.column += static_cast<int>(from);
+        node.quoted = false;
+        node.mark.column += static_cast<int>(from) + (name.quoted ? 1 : 0);
         node.mark.length = static_cast<int>(node.text.size());
         return node;
     };

@@ -363,7 +363,10 @@ void add_plan(CLI::App& app, Exit& result) {
         ->capture_default_str();
     add_path_options(*sub, command->path, command->is_path);
     sub->footer(std::string(plan_help) + std::string(path_help));
-    sub->callback([command, &result] { result = execute(*command); });
+    sub->callback([command, &result] {
+        take_limits(command->path, command->input);
+        result = execute(*command);
+    });
 }
 
 }  // namespace lineshaft

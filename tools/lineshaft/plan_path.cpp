@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -53,10 +54,6 @@ std::optional<PathLimit> limit_of(std::string_view text) {
     return limit;
 }
 
-std::string check_limit(const std::string& text) {
-    return limit_of(text) ? "" : fmt::format("'{}' is not V,A,J, three numbers above 0", text);
-}
-
 PathLimits limits_of(const std::vector<std::string>& texts) {
     PathLimits limits;
     limits.path = limit_of(texts.front()).value_or(PathLimit{});
@@ -89,7 +86,6 @@ void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
             ->type_name("V,A,J")
             ->expected(1, static_cast<int>(most_path_axes) + 1)
             ->delimiter('\0')
-            ->check(CLI::Validator(check_limit, ""))
             ->needs(path);
     path->needs(limits);
     sub.add_option("--deviation", options.deviation, "Round corners within so much of the curves")
@@ -100,6 +96,19 @@ void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->needs(path);
+}
+
+void take_limits(PathOptions& options, std::string& input) {
+    std::vector<std::string>& limits = options.limits;
+    if (limits.size() > 1 && input == "-" && !limit_of(limits.back()) &&
+        std::filesystem::exists(limits.back())) {
+        input = limits.back();
+        limits.pop_back();
+    }
+    for (const std::string& text : limits)
+        if (!limit_of(text))
+            throw CLI::ValidationError(
+                "--limits", fmt::format("'{}' is not V,A,J, three numbers above 0", text));
 }
 
 PathPlanner::PathPlanner(std::string file, const PathOptions& options)
@@ -233,14 +242,22 @@ void PathPlanner::append(const PathCurve& curve, std::string& rows) {
     last_ = curve;
 }
 
+/// From one instant at which the path may be planned anew to the next.
+double PathPlanner::next_step(bool to_end) const {
+    const double lasts = path_.leg.duration(), left = std::max(lasts - path_.time, 0.0);
+    if (!to_end || path_.stale) return std::min(left, lasts / 64);
+    const double slight = 1e-6 * lasts, until_ripe = path_.leg.ripe - path_.time;
+    if (!path_.fresh || until_ripe >= left) return left;
+    return until_ripe > 2 * slight ? until_ripe - slight : std::min(left, slight);
+}
+
 /// Until there is room for more pieces, or to the end: from sample to sample, or leg to leg.
 void PathPlanner::run(std::string& rows, bool to_end) {
     const std::uint64_t first = path_.first;
     while (!path_.finished() && !path_.lost && (to_end || path_.first == first)) {
         if (options_.every == 0) {
             path_.advance(ring_, 0);
-            const double left = std::max(path_.leg.duration() - path_.time, 0.0);
-            const double step = to_end ? left : std::min(left, path_.leg.duration() / 64);
+            const double step = next_step(to_end);
             path_.advance(ring_, step);
             duration_ += step;
             continue;

@@ -24,6 +24,10 @@ struct PathOptions {
 /// `--path`, `--limits`, `--deviation`, `--every`.
 void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path);
 
+/// The last word behind `--limits` is the input where it is a file; other words than limits are
+/// refused by a CLI::ValidationError.
+void take_limits(PathOptions& options, std::string& input);
+
 /// Turns the lines of a file of points into rows: one a path, or one a sample.
 class PathPlanner {
   public:
@@ -43,6 +47,7 @@ class PathPlanner {
     void lay(std::string& rows);
     void append(const PathCurve& curve, std::string& rows);
     void run(std::string& rows, bool to_end);
+    double next_step(bool to_end) const;
     void end(std::string& rows);
     void mistake(const std::string& what);
 

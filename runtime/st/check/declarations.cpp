@@ -347,11 +347,11 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                    "pass the instance as VAR_IN_OUT");
         const bool is_of_test = routine.pou->is_tests || routine.is_test();
         const bool is_array = type && type->kind == Kind::array;
-        if (variable->space == Space::frame && (!is_of_test || is_array))
+        const bool is_lent = variable->space == Space::reference;
+        if (is_lent || (variable->space == Space::frame && (!is_of_test || is_array)))
             refuse_object(c, *declared, type);
-        if (variable->space != Space::reference) refuse_abstract(c, type, declared->name.place);
-        const bool is_own =
-            variable->space == Space::reference && routine.owner && type == routine.owner->type;
+        if (!is_lent) refuse_abstract(c, type, declared->name.place);
+        const bool is_own = is_lent && routine.owner && type == routine.owner->type;
         const bool is_only_named =
             is_own || is_another || (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);

@@ -306,8 +306,11 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine->type) names.emplace_back(known);
     for (const BlockType& kind : c.catalog.types()) names.emplace_back(kind.name);
     std::ranges::sort(names);
-    const auto near = nearest(name.text, names);
+    auto near = nearest(name.text, names);
     if (near.empty() && c.may_be_foreign(name)) return nullptr;
+    for (const BlockType& kind : c.catalog.types())
+        if (!kind.handle.empty())
+            std::ranges::replace(near, std::string(kind.name), std::string(kind.handle));
     return c.fail(
         code::not_declared, name.place, fmt::format("'{}' is not a type", name.text),
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));

@@ -38,6 +38,11 @@ TEST_CASE("path_curve: arcs through a border run through it, the short way or th
     }
     PathCurve arc;
     CHECK(arc_through({0, 0}, {1, 1}, {2, 2}, arc) == PathFault::no_arc);
+    CHECK(arc_through({1, 2}, {3, 2}, {1, 2}, arc) == PathFault::no_arc);
+    CHECK(arc_through({1, 2}, {1, 2}, {3, 2}, arc) == PathFault::no_arc);
+    CHECK(arc_through({1, 2}, {3, 2}, {3, 2}, arc) == PathFault::no_arc);
+    CHECK(arc_through({1, 2}, {1, 2}, {1, 2}, arc) == PathFault::no_length);
+    CHECK(arc_of_radius({1, 2}, {1, 2}, {0, 0, 5}, 0, arc) == PathFault::no_arc);
 }
 
 TEST_CASE("path_curve: an arc about a rounded centre meets both ends") {

@@ -150,22 +150,28 @@ std::string violation(const PathMotion& m, const PathLimits& limits) {
     return "";
 }
 
-void command(Path& path, Random& random) {
+/// Halts are as hard as the pieces allow, or as these say.
+void command(Path& path, Random& random, const PathLimit& braking) {
     const double what = random.share();
     if (what < 0.3) {
         path.set_override(random.share() < 0.2 ? 0 : random.share());
     } else if (what < 0.6) {
-        path.halt();
+        path.halt(braking);
     } else {
         path.resume();
         path.set_override(random.share() < 0.5 ? 1 : random.between(0.1, 1.5));
     }
 }
 
-/// What is wrong with the path of a seed, cut to `most` pieces; empty if nothing.
-std::string fault_of(std::uint64_t seed, std::size_t most) {
+/// What is wrong with the path of a seed, cut to `most` pieces; empty if nothing. Halts come to
+/// `harder` times the acceleration of the path, and more of the jerk.
+std::string fault_of(std::uint64_t seed, std::size_t most, double harder = 1) {
     Random random(seed);
     const RandomPath wanted = random_path(random, most);
+    PathLimits limits = wanted.limits[0];
+    limits.path.acceleration *= harder;
+    limits.path.jerk *= harder * harder;
+    const PathLimit braking = harder == 1 ? no_path_limit : limits.path;
     std::vector<PathPiece> ring(wanted.curves.size() < 8 ? 8 : wanted.curves.size() / 2 + 2);
     Path path;
     std::size_t given = 0;
@@ -181,13 +187,13 @@ std::string fault_of(std::uint64_t seed, std::size_t most) {
             if (fault != PathFault::none) return "append";
             ++given;
         }
-        if (random.share() < commands && scan < 2000) command(path, random);
+        if (random.share() < commands && scan < 2000) command(path, random, braking);
         if (scan == 2000 && commands > 0) path.resume(), path.set_override(1);
         // An axis may be decades slower than the path: longer and longer scans come to its end.
         const double slow = std::pow(1.001, std::max(0L, scan - 20'000));
         const double step = dt * random.share() * slow;
         const PathMotion m = path.advance(ring, step);
-        const std::string what = violation(m, wanted.limits[0]);
+        const std::string what = violation(m, limits);
         if (!what.empty()) return what + " in scan " + std::to_string(scan);
         if (path.lost) return "lost";
         if (m.path.position < before - 1e-9 * length) return "position falls";
@@ -434,4 +440,73 @@ TEST_CASE("path: random paths keep all limits and end exactly") {
         while (fault_of(number, most).empty()) ++most;
         FAIL("seed " << seed << ", cut to " << most << " pieces: " << fault_of(number, most));
     }
+}
+
+TEST_CASE(
+    "path: random paths keep the limits of their axes in halts that are harder than they are") {
+    const long first = number_of("LINESHAFT_SEED", 0);
+    const long count = number_of("LINESHAFT_PATHS", 60);
+    for (long seed = first; seed < first + count; ++seed) {
+        const std::string fault = fault_of(static_cast<std::uint64_t>(seed), 500, 10);
+        INFO("seed " << seed);
+        CHECK(fault.empty());
+    }
+}
+
+TEST_CASE("path: a halt may be harder than the path, on lines as hard as it says") {
+    for (const double harder : {1.0, 10.0}) {
+        std::vector<PathPiece> ring(4);
+        Path path;
+        PathCurve line;
+        REQUIRE(line_to({0, 0}, {300, 0}, line) == PathFault::none);
+        PathLimits limits = wide_limits({100, 200, 4000});
+        limits.axes[0] = {200, 1000, 1e5};
+        REQUIRE(path.append(ring, line, limits) == PathFault::none);
+        REQUIRE(path.advance(ring, 1.5).path.velocity == 100);
+        path.halt({1e300, 200 * harder, 4000 * harder});
+        double hardest = 0, took = 0;
+        while (!path.standing()) {
+            const PathMotion m = path.advance(ring, 1e-3);
+            hardest = std::max(hardest, -m.path.acceleration);
+            took += 1e-3;
+        }
+        CHECK(hardest == Approx(std::min(200 * harder, 1000.0)));
+        CHECK(took == Approx(harder == 1 ? 0.55 : 0.125).margin(2e-3));
+        path.resume();
+        for (int scan = 0; scan < 6000 && !path.finished(); ++scan) {
+            const PathMotion m = path.advance(ring, 1e-3);
+            CHECK(std::abs(m.path.acceleration) <= 200 * (1 + 1e-9));
+        }
+        CHECK(path.now(ring).position[0] == 300);
+    }
+}
+
+TEST_CASE("path: a harder halt is over sooner wherever it begins on a contour") {
+    double sum = 0, sum_of_harder = 0;
+    for (int begin = 50; begin < 1500; begin += 25)
+        for (const bool is_harder : {false, true}) {
+            std::vector<PathPiece> ring(16);
+            Path path;
+            PathLimits limits = wide_limits({80, 200, 4000});
+            limits.axes[0] = limits.axes[1] = {100, 1500, 6e4};
+            PathVector from{};
+            for (const PathVector& to : {PathVector{30, 0}, {30, 40}, {0, 45}, {-20, 0}}) {
+                PathCurve line;
+                REQUIRE(line_to(from, to, line) == PathFault::none);
+                REQUIRE(path.append(ring, line, limits, {1e300, 8}) == PathFault::none);
+                from = to;
+            }
+            for (int scan = 0; scan < begin; ++scan) path.advance(ring, 1e-3);
+            path.halt(is_harder ? PathLimit{1e300, 1500, 6e4} : no_path_limit);
+            limits.path.acceleration = 1500, limits.path.jerk = 6e4;
+            double took = 0;
+            for (; !path.standing(); took += 1e-3) {
+                const std::string what = violation(path.advance(ring, 1e-3), limits);
+                INFO("halted after " << begin << " ms: " << what);
+                REQUIRE(what.empty());
+                REQUIRE(took < 2);
+            }
+            (is_harder ? sum_of_harder : sum) += took;
+        }
+    CHECK(sum_of_harder < 0.5 * sum);
 }

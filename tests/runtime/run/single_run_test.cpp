@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
 #include "tests/folder.hpp"
@@ -188,4 +189,29 @@ run: {for: 2 s, on_error: continue}
         "block 'gear' (MC_GearInPos) reports error 15 (sync_limits) in scan 1001 of task 'main' "
         "at 1.001 s: the coupling takes a velocity of 50 mm/s, and 40 mm/s is the limit (the first "
         "of 2)");
+}
+
+TEST_CASE("a profile that does not fit says which of its values it is, and what is due") {
+    const auto said = [](const std::string& table, const char* jerk) {
+        File file(fmt::format(R"(lineshaft: 1
+tasks: {{main: {{every: 1 ms}}}}
+blocks:
+  x: {{type: axis, task: main, default_jerk: {} mm/s^3}}
+  t: {{type: cam_table, task: main, unit: mm/s, master_unit: s, points: {}}}
+  p: {{type: MC_VelocityProfile, task: main, Axis: x, TimeVelocity: t, Execute: true}}
+run: {{for: 2 s, on_error: continue}}
+)",
+                              jerk, table));
+        auto loaded = file.load();
+        REQUIRE(loaded);
+        const RunReport report = run(*loaded, {});
+        const std::string text = report.warnings.empty() ? "" : report.warnings[0];
+        const auto colon = text.find(": ");
+        return colon == text.npos ? text : text.substr(colon + 2);
+    };
+    CHECK(said("[[0 s, 5 mm/s], [1 s, 10 mm/s]]", "5000") ==
+          "the profile begins or ends with the velocity 5 mm/s, where 0 mm/s is due");
+    CHECK(said("[[0 s, 0 mm/s], [1 s, 10 mm/s]]", "5000") ==
+          "the profile begins or ends with the acceleration 10 mm/s^2, where 0 mm/s^2 is due");
+    CHECK(said("[[0 s, 0 mm/s], [1 s, 10 mm/s]]", "0").empty());
 }
