@@ -60,12 +60,20 @@ void find_end(SyncMotion& sync, const MotionState& leader, const Cam& table) {
         sync.last_periods = -static_cast<double>(sync.ends_at);
 }
 
-/// A cam whose place the master has passed in its turn is met in the next one.
+/// After how much of its master's way a place comes again; 0: never.
+double turn_of(const SyncMotion& sync, const Cam& table, double modulo) {
+    if (sync.law == Law::positioned) return modulo;
+    if (table.periodic) return table.length() / std::abs(sync.coupling.master_scaling);
+    return CamTableId::of(sync.coupling.cam).master_absolute ? modulo : 0;
+}
+
+/// A place that the master has passed in its turn, or where it is, is met in the next one.
 void meet_in_next_turn(SyncMotion& sync, const MotionState& leader, double turn, const Cam& table) {
     const Coupling& c = sync.coupling;
     const double way = sync.direction * turn * (std::floor(-sync.distance(leader) / turn) + 1);
     const double before = sync.law_at(leader.position, table).y;
     sync.sync_x += way;
+    if (sync.law == Law::positioned || table.periodic) return;
     sync.cam_origin -= c.master_scaling * way;
     if (!CamTableId::of(c.cam).slave_absolute || c.start_mode == StartMode::relative)
         sync.cam_rise += before - sync.law_at(leader.position, table).y;
@@ -150,9 +158,9 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     if (begins_here && sync.is_beside_law(from, leader, table)) return MotionError::none;
     if (begins_here && !CamTableId::of(c.cam).master_absolute)
         return ramp_in(from, leader, table, at);
-    if (!(left > 0) && is_cam && !table.periodic && leading.modulo &&
-        CamTableId::of(c.cam).master_absolute) {
-        meet_in_next_turn(sync, leader, leading.period, table);
+    const double turn = turn_of(sync, table, leading.modulo ? leading.period : 0);
+    if (!(left > 0) && turn > 0) {
+        meet_in_next_turn(sync, leader, turn, table);
         left = sync.distance(leader);
     }
     if (!(left > 0)) return MotionError::sync_passed;
