@@ -20,13 +20,21 @@ void add_names(NameSet& names, std::string_view text, std::string_view before,
 }
 
 /// What the prelude has for others: names of its helpers begin with a small letter.
-NameSet names_of_prelude() {
+NameSet names_of_prelude(std::initializer_list<std::string_view> kinds) {
     NameSet names;
-    for (const std::string_view before : {"\nFUNCTION ", "\nFUNCTION_BLOCK ", "\nTYPE "})
-        add_names(names, written, before, " \n");
+    for (const std::string_view before : kinds) add_names(names, written, before, " \n");
     std::erase_if(names,
                   [](std::string_view name) { return name.front() >= 'a' && name.front() <= 'z'; });
     return names;
+}
+
+/// A function is called; a type is named.
+bool is_of_prelude(const Token& token, const Token& behind) {
+    static const NameSet functions = names_of_prelude({"\nFUNCTION "}),
+                         types = names_of_prelude({"\nFUNCTION_BLOCK ", "\nTYPE "});
+    const bool is_name = token.word == Word::name || token.word == Word::prefix;
+    return is_name && (types.contains(token.text) ||
+                       (behind.word == Word::open && functions.contains(token.text)));
 }
 
 }  // namespace
@@ -38,11 +46,9 @@ const std::shared_ptr<const SourceFile>& standard_source() {
 }
 
 bool uses_standard_source(const Tokens& tokens) {
-    static const NameSet names = names_of_prelude();
-    return std::ranges::any_of(tokens.tokens, [](const Token& token) {
-        const bool is_name = token.word == Word::name || token.word == Word::prefix;
-        return is_name && names.contains(token.text);
-    });
+    for (std::size_t i = 0; i + 1 < tokens.tokens.size(); ++i)
+        if (is_of_prelude(tokens.tokens[i], tokens.tokens[i + 1])) return true;
+    return false;
 }
 
 std::shared_ptr<const SourceFile> source_of(const BlockType& type) {
