@@ -27,6 +27,10 @@ END_PROGRAM
 """
 
 
+# As OpenPLC and Beremiz write text: it is in the dialect of what they draw.
+MATIEC = "CONFIGURATION c\n  RESOURCE r ON PLC\n  END_RESOURCE\nEND_CONFIGURATION\n"
+
+
 class Network:
     """A PROGRAM in both forms: elements of a body, and statements."""
 
@@ -811,12 +815,13 @@ with tempfile.TemporaryDirectory() as temporary:
         drawn_as = (write_project(folder, nets) if language == "NWL" else write_folders(folder, nets) if language == "rows"
                     else write_export(folder, language, nets))
         said_as = "said.EXP" if language in ("NWL", "LD") else "said.st"  # edges and counters of the dialect
-        (folder / said_as).write_text("".join(net.text() for net in nets))
+        mark = MATIEC if language in ("FBD", "IL") else ""
+        (folder / said_as).write_text("".join(net.text() for net in nets) + mark)
         a, b = run(folder, "drawn", drawn_as, nets), run(folder, "said", said_as, nets)
         if a != b:
             first = next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
             columns = [j for j, (x, y) in enumerate(zip(a[first].split(b","), b[first].split(b","))) if x != y]
-            net = nets[(columns[0] - 1) // 6]
+            net = nets[(columns[0] - 2) // 6]
             print(net.xml(language), net.text(), sep="\n")
             one = (f"{net.name}.TcPOU" if language == "NWL" else f"Logical/{net.name}/IEC.prg" if language == "rows"
                    else write_export(folder, language, [net], "one.xml"))

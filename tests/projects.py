@@ -362,14 +362,14 @@ def check_mapp():
 
 
 def check_headers():
-    """PLCopen XML of CODESYS has its texts, counters, edges; that of others, Beremiz or OpenPLC, the standard's."""
+    """PLCopen XML of CODESYS has its texts and edges; that of others, Beremiz or OpenPLC, the standard's. Neither's counters go below 0."""
     body = ('<types><dataTypes/><pous><pou name="P" pouType="program"><interface><localVars>'
             '<variable name="text"><type><string/></type></variable><variable name="counter"><type><derived name="CTD"/></type></variable>'
             '<variable name="size"><type><INT/></type></variable><variable name="falls"><type><derived name="F_TRIG"/></type></variable>'
             '<variable name="pulses"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
             "counter(CD := TRUE);\nsize := SIZEOF(text);\nfalls(CLK := FALSE);\nIF falls.Q THEN pulses := pulses + 1; END_IF;"
             "</xhtml></ST></body></pou></pous></types><instances><configurations/></instances></project>")
-    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (-1, 255, 1))):
+    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (0, 255, 1))):
         write(f"{product}.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
               f'<fileHeader companyName="" productName="{product}" productVersion="1" creationDateTime="2024-01-01T00:00:00"/>' + body)
         run("new", product, "--from", f"{product}.xml")

@@ -27,13 +27,6 @@ void check_unit(Checking& c, Variable& variable, const Declaration& declared) {
                fmt::format("'{}' is not a unit", declared.unit), "lineshaft units lists them");
 }
 
-/// All that stands in VAR_GLOBAL.
-Type& global_variables(Checking& c) {
-    if (c.checked.globals.empty())
-        c.checked.globals.push_back({"globals", &c.make_type(Kind::structure, "globals")});
-    return const_cast<Type&>(*c.checked.globals.front().type);
-}
-
 /// `n := 5` of CONST, which has no type but that of its value.
 const Type* make_untyped_constant(Checking& c, Variable& variable) {
     const Type* type = check(c, variable.initial);
@@ -44,143 +37,6 @@ const Type* make_untyped_constant(Checking& c, Variable& variable) {
     variable.space = Space::constant;
     variable.value = variable.initial->constant;
     return variable.type = type;
-}
-
-/// A constant scalar takes no memory, unless others see it at its address.
-void make_constant(Checking& c, Variable& variable) {
-    if (variable.space == Space::image) return;
-    if (variable.type && variable.type->is_instance() && !variable.name.place.dialect().is_loose)
-        c.fail(code::wrong_place, variable.name.place,
-               "an instance changes when it is called, so it is no constant",
-               "declare it in VAR, without CONSTANT");
-    if (!variable.type || !variable.type->is_scalar()) return;
-    variable.space = Space::constant;
-    if (!variable.initial) {
-        variable.value = variable.type->initial;
-        if (!variable.name.place.dialect().constants_have_values) return;
-        c.warn(code::not_a_constant, variable.name.place,
-               fmt::format("the constant '{}' is what its type begins with", variable.text),
-               "write ':= value' behind its type");
-        return;
-    }
-    check_initial(c, variable);
-    if (variable.initial->kind == E::constant) variable.value = variable.initial->constant;
-}
-
-/// `list.x`, as a variable of a list is named from anywhere.
-std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
-                              const Declaration& declared) {
-    return c.checked.names.emplace_back(fmt::format("{}.{}", block.list, declared.name.text));
-}
-
-/// A list of a library's project is seen as all that stands in its namespace.
-Token name_of_global(Checking& c, const Declaration& declared) {
-    return is_library(declared.name) ? declared.name : name_with_namespace(c, declared.name);
-}
-
-/// A PROGRAM of B&R has the name of its folder, which is none of its language.
-bool is_folder(const Pou& pou) {
-    return pou.kind == PouKind::program && !pou.name.place.dialect().programs_are_named &&
-           pou.name.place.dialect().capitals_count;
-}
-
-/// `Trace : Trace;`, where CODESYS tells by the place which is meant.
-bool is_beside_a_type(Checking& c, const Token& name) {
-    const Dialect& dialect = name.place.dialect();
-    if (!(dialect.is_loose || dialect.capitals_count) || c.globals.contains(name.text))
-        return false;
-    const Routine* block = find_in(c.users.routines, name.text);
-    const bool is_type = block && block->pou->kind == PouKind::function_block;
-    return is_type || (block && is_folder(*block->pou)) || c.users.types.contains(name.text);
-}
-
-/// `a` beside `A`, where capitals count.
-bool differs_in_capitals(const Variable& known, const Token& name) {
-    return name.place.dialect().capitals_count && known.text != name.text;
-}
-
-bool is_other_by_capitals(Checking& c, const Token& name) {
-    const Variable* known = find_in(c.globals, name.text);
-    return known && differs_in_capitals(*known, name) &&
-           !c.by_capitals.contains({known->of, name.text});
-}
-
-/// TwinCAT's lists of globals may have the same names: the variable that was the first; null: none.
-const Variable* in_another_list(Checking& c, const DeclarationBlock& block, const Token& name) {
-    const Variable* known = find_in(c.globals, name.text);
-    const bool is_of_list = known && !block.list.empty() && name.place.dialect().is_loose &&
-                            known->section == Section::global;
-    return is_of_list && known->name.place.source != name.place.source ? known : nullptr;
-}
-
-/// Axes of one name in several lists are several: each is called by its list and its name.
-void declare_axis(Checking& c, const DeclarationBlock& block, Variable& axis) {
-    const auto name_by_list = [&](Checking::ListedAxis& listed) {
-        const std::string_view list = listed.list.substr(listed.list.rfind('.') + 1);
-        std::string& name = c.checked.globals[static_cast<std::size_t>(listed.global)].name;
-        if (!list.empty()) name = fmt::format("{}_{}", list, listed.name);
-    };
-    declare_object(c, axis);
-    Checking::ListedAxis own{block.list, axis.name.text, axis.global};
-    const auto [first, is_first] = c.listed_axes.emplace(axis.name.text, own);
-    if (is_first || first->second.list == block.list) return;
-    name_by_list(first->second);
-    name_by_list(own);
-}
-
-Variable* declare_global(Checking& c, const DeclarationBlock& block, const Declaration& declared) {
-    if (!is_library(declared.name)) global_variables(c);
-    const Type* type = resolve(c, *declared.type);
-    const std::string_view in_list = name_in_list(c, block, declared);
-    Token name = name_of_global(c, declared);
-    const bool is_axis = type && type->kind == Kind::handle;  // which its bare name means, too
-    const Variable* const first =
-        block.is_qualified_only && !is_axis ? nullptr : in_another_list(c, block, name);
-    if (first) c.in_several_lists.emplace(name.text, std::pair(first->name, declared.name));
-    if (first || block.is_qualified_only) name.text = in_list;
-    const bool is_other = is_other_by_capitals(c, name);
-    if (!is_other && !is_beside_a_type(c, name) && !is_new_name(c, name, c.users.places))
-        return nullptr;
-    Variable* variable = add(c, c.checked.variables, declared, type);
-    c.globals.emplace(in_list, variable);
-    if (is_axis) {
-        declare_axis(c, block, *variable);
-        return variable;
-    }
-    variable->text = name.text;
-    variable->constant = block.constant;
-    variable->retain = block.retain;
-    locate_in_image(c, *variable, declared);
-    refuse_overlay(c, declared);
-    variable->section = Section::global;
-    if (variable->space == Space::frame) {
-        variable->space = Space::global;
-        variable->global = 0;
-    }
-    refuse_abstract(c, type, declared.name.place);
-    if (block.constant) make_constant(c, *variable);
-    if (variable->space == Space::global) global_variables(c).members.push_back(variable);
-    if (is_other) c.by_capitals.emplace(std::pair(variable->of, name.text), variable);
-    if (!block.is_qualified_only) c.globals.emplace(name.text, variable);
-    return variable;
-}
-
-/// What a VAR_EXTERNAL says of a variable that no VAR_GLOBAL here declares, as those of a
-/// controller's modules, which other tools make.
-void declare_externals(Checking& c) {
-    for (const DeclarationBlock& block : c.tree.globals)
-        for (const Declaration* declared : block.declarations) {
-            const Token& name = declared->name;
-            if (block.section != Section::external || c.globals.contains(name.text) ||
-                c.users.places.contains(name.text))
-                continue;
-            const Type* type = resolve(c, *declared->type);
-            if (!type || type->kind == Kind::handle) continue;
-            c.warn(code::not_declared, name.place,
-                   fmt::format("no VAR_GLOBAL declares '{}'", name.text),
-                   "it is a variable of its own here: declare it where its value comes from");
-            declare_global(c, {.section = Section::global}, *declared);
-        }
 }
 
 /// Functions and methods of one name whose arguments are of other types.
@@ -435,6 +291,26 @@ void declare_routine(Checking& c, Routine& routine) {
 
 }  // namespace
 
+void make_constant(Checking& c, Variable& variable) {
+    if (variable.space == Space::image) return;
+    if (variable.type && variable.type->is_instance() && !variable.name.place.dialect().is_loose)
+        c.fail(code::wrong_place, variable.name.place,
+               "an instance changes when it is called, so it is no constant",
+               "declare it in VAR, without CONSTANT");
+    if (!variable.type || !variable.type->is_scalar()) return;
+    variable.space = Space::constant;
+    if (!variable.initial) {
+        variable.value = variable.type->initial;
+        if (!variable.name.place.dialect().constants_have_values) return;
+        c.warn(code::not_a_constant, variable.name.place,
+               fmt::format("the constant '{}' is what its type begins with", variable.text),
+               "write ':= value' behind its type");
+        return;
+    }
+    check_initial(c, variable);
+    if (variable.initial->kind == E::constant) variable.value = variable.initial->constant;
+}
+
 void refuse_object(Checking& c, const Declaration& declared, const Type* type) {
     const bool is_array = type && type->kind == Kind::array;
     while (type && type->kind == Kind::array) type = type->element;
@@ -527,50 +403,6 @@ void keep_once(Checking& c, Variable& variable) {
     variable.of = nullptr;
     variable.global = static_cast<int>(global - c.checked.globals.begin());
     c.statics->members.push_back(&variable);
-}
-
-Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant) {
-    constexpr int most_hops = 200;
-    const auto [block, declared] = constant;
-    if (c.hops == most_hops || !c.begun_constants.insert(declared).second) return nullptr;
-    ++c.hops;
-    Variable* variable = declare_global(c, *block, *declared);
-    --c.hops;
-    return variable;
-}
-
-void declare_globals(Checking& c) {
-    for (const DeclarationBlock& block : c.tree.globals)
-        for (const Declaration* declared : block.declarations)
-            if (block.section == Section::global &&
-                (!block.constant || c.begun_constants.insert(declared).second))
-                declare_global(c, block, *declared);
-    declare_externals(c);
-    for (Pou* pou : c.tree.units) {
-        if (pou->kind != PouKind::data_block) continue;
-        const int number = static_cast<int>(c.checked.globals.size());
-        const Type* type = nullptr;
-        if (pou->base) {
-            type = resolve(c, *pou->base);
-        } else {
-            Type& made = c.make_type(Kind::structure, std::string(pou->name.text));
-            for (const DeclarationBlock& block : pou->blocks)
-                for (const Declaration* declared : block.declarations) {
-                    refuse_overlay(c, *declared);
-                    made.members.push_back(
-                        add(c, c.checked.variables, *declared, resolve(c, *declared->type)));
-                    made.members.back()->retain = block.retain;
-                }
-            type = &made;
-        }
-        Variable& variable = c.make_variable(pou->name, pou->name.text, type);
-        variable.section = Section::global;
-        variable.space = Space::global;
-        variable.global = number;
-        c.checked.globals.push_back({std::string(pou->name.text), type, pou});
-        c.globals.emplace(pou->name.text, &variable);
-        c.note(variable.name.place, variable);
-    }
 }
 
 void declare_routines(Checking& c) {

@@ -11,9 +11,8 @@ void collect_names(Checking& c);
 
 /// A variable in `to`, with its unit, which is checked.
 Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared, const Type* type);
-/// One that a type or another constant asks for, wherever it is declared; null when it asks for
-/// itself, or over too many others.
-Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
+/// A constant scalar takes no memory, unless others see it at its address.
+void make_constant(Checking& c, Variable& variable);
 
 /// The variable stands beside all blocks, where no source names it: VAR_STAT, and what the checker
 /// adds.
@@ -26,10 +25,25 @@ const std::vector<Argument>* constructor_arguments(const TypeText* text, const T
 /// Of a variable or member that would be a block of the program, such as AXIS.
 void refuse_object(Checking& c, const Declaration& declared, const Type* type);
 
-/// VAR_GLOBAL and data blocks.
-void declare_globals(Checking& c);
 /// Variables, results and constants of all routines, and which they are made of.
 void declare_routines(Checking& c);
+
+// globals.cpp
+
+/// VAR_GLOBAL and data blocks.
+void declare_globals(Checking& c);
+/// One that a type or another constant asks for, wherever it is declared; null when it asks for
+/// itself, or over too many others.
+Variable* declare_early(Checking& c, const Checking::GlobalConstant& constant);
+/// `list.x`, as a variable of a list is named from anywhere.
+std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
+                              const Declaration& declared);
+/// A list of a library's project is seen as all that stands in its namespace.
+Token name_of_global(Checking& c, const Declaration& declared);
+/// `a` beside `A`, where capitals count.
+bool differs_in_capitals(const Variable& known, const Token& name);
+/// A PROGRAM of B&R has the name of its folder, which is none of its language.
+bool is_folder(const Pou& pou);
 
 // initial_values.cpp
 
