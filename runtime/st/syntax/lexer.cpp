@@ -11,6 +11,7 @@
 #include "runtime/source/habits.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
+#include "runtime/st/syntax/foreign_text.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
@@ -271,10 +272,10 @@ class Lexer {
             ++at_;
             return void(add(*word));
         }
-        if (!after_dot && is_classic_bit(text)) return skip_bit();
+        if (!after_dot && is_classic_bit(text)) return at_ += 2, void(add(Word::direct));
         if (skip_section(text)) return;
         const std::optional<Word> word = word_of(text);
-        if (is_title(text)) return add(Word::name), skip_to_end_of_line();
+        if (new_line_ && is_title(text_, at_, text)) return add(Word::name), skip_to_end_of_line();
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
         if (!word || after_dot || is_variable) return void(add(Word::name));
         add(*word);
@@ -299,17 +300,6 @@ class Lexer {
         return tokens_.source->dialect.packs_as_s7 && peek() == '.' && is_digit(peek(1)) &&
                text_[start_] != '"' && read_classic_address(fmt::format("{}.0", text)).has_value();
     }
-    void skip_bit() {
-        at_ += 2;
-        add(Word::direct);
-    }
-
-    /// `TITLE = any text`, to the end of its line.
-    bool is_title(std::string_view text) const {
-        if (!new_line_ || !same_name(text, "title")) return false;
-        const std::size_t next = text_.find_first_not_of(" \t", at_);
-        return next != std::string_view::npos && text_[next] == '=';
-    }
 
     /// A ':', ':=' or ',' follows.
     bool is_declared_or_assigned() const {
@@ -317,26 +307,10 @@ class Lexer {
         return next != std::string_view::npos && (text_[next] == ':' || text_[next] == ',');
     }
 
-    /// CoDeSys 2.3 exports pictures, what is connected, alarms, libraries and tasks beside its
-    /// units, in languages of their own.
     bool skip_section(std::string_view word) {
-        struct Section {
-            std::string_view first, last;
-            bool is_alone;  ///< in its line
-        };
-        static constexpr Section sections[] = {{"visualisation", "END_VISUALISATION", false},
-                                               {"plc_configuration", "PLC_END", true},
-                                               {"_alarmconfig", "_END_ALARMCONFIG", true},
-                                               {"_workspace", "_END_WORKSPACE", true},
-                                               {"library", "END_LIBRARY", true},
-                                               {"resource", "END_RESOURCE", true}};
-        const auto* section = find_called(sections, word, &Section::first);
-        if (!new_line_ || !section || tokens_.source->dialect.vendor != Vendor::codesys)
-            return false;
-        const std::size_t next = text_.find_first_not_of(" \t\r", at_);
-        if (section->is_alone && next != text_.npos && text_[next] != '\n') return false;
-        const std::size_t end = text_.find(section->last, at_);
-        if (end != text_.npos) at_ = end + section->last.size();
+        if (!new_line_ || tokens_.source->dialect.vendor != Vendor::codesys) return false;
+        const std::size_t end = end_of_section(text_, at_, word);
+        if (end != text_.npos) at_ = end;
         return end != text_.npos;
     }
 
@@ -489,16 +463,6 @@ class Lexer {
             return fail_as_binary(here);
         fail(here, fmt::format("'{}' has no meaning here", here.text()),
              std::string(instead_of(text_.substr(start_))));
-    }
-
-    /// What other languages write with signs that this one has not.
-    static std::string_view instead_of(std::string_view text) {
-        if (text.starts_with("!=")) return "write '<>'";
-        if (text.starts_with('!')) return "write NOT";
-        if (text.starts_with('?')) return "write IF, or SEL(condition, otherwise, then)";
-        if (text.starts_with('%')) return "write MOD";
-        if (text.starts_with("||")) return "write OR";
-        return "names have letters, digits and '_'; others stand in quotes";
     }
 
     /// Once, and nothing else can be meant.

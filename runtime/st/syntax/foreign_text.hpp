@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace lineshaft::st {
+
+// What stands in sources and is none of the language.
+
+/// CoDeSys 2.3 exports pictures, what is connected, alarms, libraries and tasks beside its units,
+/// in languages of their own: behind the one that `word`, which ends at `at`, begins; npos: it is
+/// none.
+std::size_t end_of_section(std::string_view text, std::size_t at, std::string_view word);
+
+/// `TITLE = any text`, to the end of its line; `word` ends at `at`.
+bool is_title(std::string_view text, std::size_t at, std::string_view word);
+
+/// What to write for a sign of another language, with which `text` begins.
+std::string_view instead_of(std::string_view text);
+
+}  // namespace lineshaft::st
