@@ -329,6 +329,17 @@ static std::optional<Wide> only_character(const std::string& text, const Type& t
                             : std::nullopt;
 }
 
+/// CODESYS reads the number in a bit string where a REAL is due, which rounds one of its width.
+static bool counts_bits(const Type& from, const Type& to, const Place& place) {
+    return place.dialect().bits_count_in_reals && from.kind == Kind::bits && to.is_real();
+}
+static const Type* count_bits(Checking& c, Expression*& e, const Type& to) {
+    const int bits = e->type->bits;
+    if (bits >= to.bits && !is_constant(*e)) warn_of_loss(c, *e, to);
+    convert(c, e, integer_type(bits, false));
+    return convert(c, e, to);
+}
+
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
@@ -372,6 +383,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     if (is_of_base(from, to) && become_base(c, e, to)) return true;
     if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});
+    if (counts_bits(from, to, e->place)) return count_bits(c, e, to);
     const bool is_time = e->place.dialect().dint_is_time && is_time_of_number(from.plain(), to);
     const bool is_truth = from.kind == Kind::boolean && e->place.dialect().bool_is_number &&
                           (to.kind == Kind::integer || to.kind == Kind::bits) && !to.is_subrange;
@@ -473,10 +485,13 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     } else {
         common = common_type(a, b);
         if (!common && mixes_signs_of_64(e)) common = &ulint_type;
+        if (!common && counts_bits(a, b, e.place)) common = &b;
+        if (!common && counts_bits(b, a, e.place)) common = &a;
     }
-    const auto real_of = [](const Type& any, const Type& typed) -> const Type* {
-        if (any.kind != Kind::any_real || typed.kind != Kind::integer) return nullptr;
-        return common_type(typed, real_type);
+    const auto real_of = [&](const Type& any, const Type& typed) -> const Type* {
+        if (any.kind != Kind::any_real) return nullptr;
+        if (counts_bits(typed, any, e.place)) return typed.bits < 32 ? &real_type : &lreal_type;
+        return typed.kind == Kind::integer ? common_type(typed, real_type) : nullptr;
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
     if (const Type* wider =
