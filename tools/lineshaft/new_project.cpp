@@ -244,7 +244,7 @@ std::string inputs_text(const std::vector<Field>& addresses) {
         wires += fmt::format("  \"{}\": inputs.{}\n", field.name, name);
     }
     if (inputs.empty()) return {};
-    return "inputs:                          # stimuli: changes them, see lineshaft form stimulus\n" +
+    return "inputs:                          # stimuli change them: lineshaft form stimulus\n" +
            inputs + "io:\n" + wires;
 }
 

@@ -22,13 +22,13 @@ struct SuitesWatch {
     std::function<void(const std::string& suite)> at_work = {};  ///< told before each is scanned
 };
 
-/// Scans the PROGRAM of `file` every `cycle` [ns], behind it those of `beside`, which tasks run, and
-/// then the suites of TcUnit that they, what they call and the lists of globals have, in virtual time from 0 on, until each test is finished; axes and
-/// other blocks of the lists are scanned every millisecond, as is one for each AXIS_REF that the
-/// program, its blocks or a list keep. A failed assertion does not end its
-/// test; the first one is told. A test that is not finished after ten minutes has failed, as has
-/// one in which a fault happens, and then the others of its suite that are not finished. Empty,
-/// with all that is wrong in `out`, if anything is.
+/// Scans the PROGRAM of `file` every `cycle` [ns], behind it those of `beside`, which tasks run,
+/// and then the suites of TcUnit that they, what they call and the lists of globals have, in
+/// virtual time from 0 on, until each test is finished; axes and other blocks of the lists are
+/// scanned every millisecond, as is one for each AXIS_REF that the program, its blocks or a list
+/// keep. A failed assertion does not end its test; the first one is told. A test that is not
+/// finished after ten minutes has failed, as has one in which a fault happens, and then the others
+/// of its suite that are not finished. Empty, with all that is wrong in `out`, if anything is.
 std::optional<std::vector<SuiteTest>> run_suites(
     const std::shared_ptr<const SourceFile>& file,
     const std::vector<std::shared_ptr<const SourceFile>>& sources, const Catalog& standard,

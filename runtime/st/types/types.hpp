@@ -63,8 +63,8 @@ struct Type {
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;        ///< STRUCT without a TYPE: any of its members is equal
     bool counts_ns = false;         ///< LTIME, LDATE, LTOD, LDT: as numbers they are in ns
-    const Type* base = nullptr;  ///< of a subrange, named values, an enumeration with numbers; EXTENDS
-    const Type* element = nullptr;         ///< of an array; what a reference is to, or null
+    const Type* base = nullptr;     ///< of a subrange, named values, numbered enumeration; EXTENDS
+    const Type* element = nullptr;  ///< of an array; what a reference is to, or null
     Referring referring = Referring::ref;  ///< of a reference
     bool has_inner = false;                ///< of an array: its element is its next dimension
     std::uint32_t length = 0;              ///< of a text, in characters
