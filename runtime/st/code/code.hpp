@@ -98,6 +98,8 @@ class Witness {
     /// `frame` is the address of the frame that runs, `depth` how many calls do. True: what runs
     /// ends there, with Fault::assertion.
     virtual bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) = 0;
+    /// ADVANCE_TIME: in the scan that it was given. False for a time that would go back, or end.
+    virtual bool let_pass(std::int64_t time, std::int64_t interval) = 0;
 };
 
 /// What all the sources together are compiled to.

@@ -177,29 +177,30 @@ template <bool counts, bool steps>
 }
 
 template <bool counts, bool steps>
-Fault run_whole(Frames& frames, const CodeRoutine& routine) {
-    const Fault fault = run<counts, steps>(frames, routine.entry);
+Fault run_whole(Frames& frames) {
+    frames.fuel_left = frames.fuel;
+    const Fault fault = run<counts, steps>(frames, frames.scanned.entry);
     return fault == Fault::none ? fault : run_caught<counts, steps>(frames, fault);
 }
 
-[[gnu::always_inline]] inline Fault run_native(Frames& frames, const CodeRoutine& routine) {
+[[gnu::always_inline]] inline Fault run_native(Frames& frames) {
     const Code& code = frames.code;
-    const Fault fault = code.native->scan_of(code, routine)(frames.root, frames, frames.fuel);
+    const Fault fault =
+        code.native->scan_of(code, frames.scanned)(frames.root, frames, frames.fuel);
     return fault == Fault::none ? fault : run_caught<false, false>(frames, fault);
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.
-[[gnu::noinline]] Fault run_otherwise(Frames& frames, const CodeRoutine& routine) {
+[[gnu::noinline]] Fault run_otherwise(Frames& frames) {
     const auto& times = frames.code.times;
     Probe* const probe = frames.code.probe;
     std::byte* const instance = frames.root;
-    const bool steps = probe && probe->steps(routine, frames.now);
-    if (frames.code.native && !steps) return run_native(frames, routine);
-    if (!times && !steps) return run_whole<false, false>(frames, routine);
+    const bool steps = probe && probe->steps(frames.scanned, frames.now);
+    if (frames.code.native && !steps) return run_native(frames);
+    if (!times && !steps) return run_whole<false, false>(frames);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
-    const Fault fault =
-        steps ? run_whole<true, true>(frames, routine) : run_whole<true, false>(frames, routine);
+    const Fault fault = steps ? run_whole<true, true>(frames) : run_whole<true, false>(frames);
     if (!times) return fault;
     std::memcpy(instance + 8 * counts_slot, counted, 8 * op_classes);
     const Wide taken = std::inner_product(times->begin(), times->end(), counted, Wide{0});
@@ -214,16 +215,13 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
         marks_[code.statements[i - 1].instruction] = static_cast<std::uint32_t>(i);
 }
 
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
               const Context& context, std::int64_t fuel) {
-    std::byte* const calls = instance + 8 * std::size_t{code.calls_slot()};
-    Frames frames{code, now, context, fuel, instance, routine.levels, calls};
-    if (routine.pile != 0) {
-        frames.pile = frames.pile_begin = instance + 8 * std::size_t{routine.pile};
-        frames.pile_end = frames.pile + 8 * std::size_t{pile_slots};
-    }
-    if (code.native && !code.probe) return run_native(frames, routine);
-    return run_otherwise(frames, routine);
+    Frames frames(code, routine, now, context, fuel, instance,
+                  instance + 8 * std::size_t{code.calls_slot()},
+                  instance + 8 * std::size_t{routine.pile});
+    if (code.native && !code.probe) return run_native(frames);
+    return run_otherwise(frames);
 }
 
 }  // namespace lineshaft::st

@@ -50,9 +50,8 @@ inline std::byte* place_of(std::uint64_t address, std::byte* root, const Context
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With
 /// Code::times the header has how many of each class were executed and what they took.
-/// ADVANCE_TIME of a test changes `now`. Where Code::probe wants to step the scan, it is
-/// interpreted.
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, Scan& now,
+/// Where Code::probe wants to step the scan, it is interpreted.
+Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
               const Context& context, std::int64_t fuel);
 
 }  // namespace lineshaft::st

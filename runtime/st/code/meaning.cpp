@@ -91,13 +91,19 @@ bool Frames::has(std::uint64_t address, std::uint32_t method) const {
 
 bool Frames::has_room(std::uint64_t routine) const {
     const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
-    return running + 1 + code.routines[routine].depth <= levels;
+    return running + 1 + code.routines[routine].depth <= scanned.levels;
+}
+
+std::byte* Frames::pile_begin() const {
+    return root + 8 * std::size_t{scanned.pile};
 }
 
 bool Frames::keep(std::byte* to, std::uint64_t routine, std::uint64_t address,
                   std::uint64_t slots) {
     const std::uint64_t bytes = 8 * (slots + record_end);
-    if (!has_room(routine) || static_cast<std::uint64_t>(pile_end - pile) < bytes) return false;
+    const auto taken = static_cast<std::uint64_t>(pile - pile_begin());
+    const bool fits = scanned.pile != 0 && taken + bytes <= 8 * std::uint64_t{pile_slots};
+    if (!fits || !has_room(routine)) return false;
     set_word(to, 0, static_cast<std::uint64_t>(pile - root) / 8);
     pile += bytes;
     set_word(pile - 8 * record_end, 0, address);
@@ -140,7 +146,7 @@ void Frames::pop() {
 }
 
 void Frames::unwind(std::uint64_t running) {
-    while (pile != pile_begin && word(pile - 8, 0) >= running) {
+    while (pile != pile_begin() && word(pile - 8, 0) >= running) {
         if (word(pile - 8 * record_end, 0) != no_frame) swap();
         pop();
     }
@@ -203,6 +209,10 @@ std::uint64_t Frames::exception() const {
         default:
             return 0x51;  // RTSEXCPT_ACCESS_VIOLATION
     }
+}
+
+bool Frames::advance(std::int64_t by, std::int64_t interval) const {
+    return code.witness && code.witness->let_pass(by, interval);
 }
 
 bool Frames::ends_at(std::uint64_t behind) const {

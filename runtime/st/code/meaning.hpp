@@ -16,6 +16,7 @@ namespace lineshaft::st {
 
 struct Bytes;
 struct Code;
+struct CodeRoutine;
 struct Piece;
 
 }  // namespace lineshaft::st
@@ -264,22 +265,33 @@ std::int64_t compare_references(const std::byte* a, const std::byte* b);
 std::optional<std::int64_t> reference_distance(const std::byte* a, const std::byte* b);
 
 /// What a scan needs besides where it is: apart, so that the registers are left to that.
+/// The last three are written before they are read.
 struct Frames {
     const Code& code;
-    Scan& now;
+    const CodeRoutine& scanned;  ///< what the root runs
+    const Scan& now;
     const Context& context;
     std::int64_t fuel;
     std::byte* root;
-    std::uint32_t levels = 0;          ///< of calls that the root has room for
-    std::byte* bottom = nullptr;       ///< where the calls that run begin in the instance
-    std::byte* top = bottom;           ///< of the calls that run
-    std::uint64_t base = 0;            ///< address of the frame
-    std::uint64_t reached = 0;         ///< what the last reference is to
-    std::uint64_t* counted = nullptr;  ///< instructions of each class
-    std::int64_t fuel_left = fuel;     ///< when a run ended
-    std::byte* pile = nullptr;         ///< behind the frames of calls that recur
-    std::byte* pile_begin = nullptr;
-    std::byte* pile_end = nullptr;  ///< where there is no more room for them
+    std::byte* bottom;       ///< where the calls that run begin in the instance
+    std::byte* top;          ///< of the calls that run
+    std::byte* pile;         ///< behind the frames of calls that recur
+    std::uint64_t base = 0;  ///< address of the frame
+    std::uint64_t reached;   ///< what the last reference is to
+    std::uint64_t* counted;  ///< instructions of each class
+    std::int64_t fuel_left;  ///< when a run ended
+
+    Frames(const Code& of, const CodeRoutine& runs, const Scan& moment, const Context& around,
+           std::int64_t passes, std::byte* instance, std::byte* calls, std::byte* recurring)
+        : code(of),
+          scanned(runs),
+          now(moment),
+          context(around),
+          fuel(passes),
+          root(instance),
+          bottom(calls),
+          top(calls),
+          pile(recurring) {}
 
     /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
     /// times 2^32, plus a slot.
@@ -344,11 +356,7 @@ struct Frames {
     }
 
     /// Of a test: false for a time that would go back, or end.
-    bool advance(std::int64_t by, std::int64_t interval) {
-        now.interval = interval;
-        ++now.index;
-        return by >= 0 && !__builtin_add_overflow(now.time, by, &now.time);
-    }
+    bool advance(std::int64_t by, std::int64_t interval) const;
 
     /// `behind` an assertion that does not hold.
     bool ends_at(std::uint64_t behind) const;
@@ -406,6 +414,7 @@ struct Frames {
     Fault end(Fault fault, std::uint64_t at) const;
 
   private:
+    std::byte* pile_begin() const;
     /// Of the calls that a fault ends, where so many run behind it.
     void unwind(std::uint64_t running);
     bool keep(std::byte* to, std::uint64_t routine, std::uint64_t address, std::uint64_t slots);

@@ -143,6 +143,12 @@ std::optional<Mark> Bench::cut() {
     return cut_of(made_.generated.code, unit_);
 }
 
+bool Bench::let_pass(std::int64_t time, std::int64_t interval) {
+    now_.interval = interval;
+    ++now_.index;
+    return time >= 0 && !__builtin_add_overflow(now_.time, time, &now_.time);
+}
+
 bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) {
     const Assertion& assertion = *assertions_.at(instruction);
     frame_ = frame;

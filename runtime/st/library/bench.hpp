@@ -47,6 +47,7 @@ class Bench : Witness {
     void add_types(const Type& unit, std::span<const KeptReference> kept);
     std::vector<std::size_t> lay_out(const Type& unit, std::span<const KeptReference> kept);
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
+    bool let_pass(std::int64_t time, std::int64_t interval) override;
     const std::byte* place(std::uint64_t address);
     std::string_view text_at(std::uint64_t address);
     std::uint64_t word(std::uint64_t slot);

@@ -53,11 +53,11 @@ bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
 
 bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
               const Context& context) {
-    if (kind.run_test) return run_test(kind, instance, context);
-    const bool is_looked_at = !kind.references.empty() || !kind.checks.empty();
-    if (is_looked_at && is_refused(kind, instance)) return true;
-    Scan moment = now;
-    return execute(*kind.code, *kind.routine, instance, moment, context, kind.options.fuel) !=
+    if (kind.is_looked_at) {
+        if (kind.run_test) return run_test(kind, instance, context);
+        if (is_refused(kind, instance)) return true;
+    }
+    return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel) !=
            Fault::none;
 }
 
@@ -306,7 +306,8 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
     return kind;
 }
 
-BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
+BlockType block_type(KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
+    kind.is_looked_at = kind.run_test || !kind.references.empty() || !kind.checks.empty();
     BlockType type;
     type.name = kind.name;
     type.doc = kind.doc;

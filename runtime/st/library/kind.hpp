@@ -12,6 +12,7 @@ namespace lineshaft::st {
 struct KindContext {
     const Code* code = nullptr;
     const CodeRoutine* routine = nullptr;  ///< null: a data block
+    bool is_looked_at = false;             ///< before a scan
     const std::uint64_t* image = nullptr;
     std::size_t size = 0;
     Options options;
@@ -66,6 +67,6 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
 /// What the kind is compiled from; null of one that is not Structured Text, and of the image.
 const Library::Made* made_of(const BlockType& kind);
 
-BlockType block_type(const KindContext& kind, const std::shared_ptr<const Library::Made>& made);
+BlockType block_type(KindContext& kind, const std::shared_ptr<const Library::Made>& made);
 
 }  // namespace lineshaft::st

@@ -56,7 +56,7 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     add_data_blocks(*made, options);
     Library library;
     library.made_ = made;
-    for (const KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));
+    for (KindContext& kind : made->kinds) library.kinds_.push_back(block_type(kind, made));
     if (const int image = made->checked.image.global; image >= 0)
         library.kinds_.push_back(
             image_type(*made, made, made->checked.globals[static_cast<std::size_t>(image)]));

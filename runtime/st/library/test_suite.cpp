@@ -89,7 +89,7 @@ std::vector<BlockType> TestSuite::kinds(std::size_t test) const {
     };
     write_test_fields(*made_, kind, *made_->fixture);
     std::vector<BlockType> kinds;
-    for (const KindContext& each : made_->kinds) kinds.push_back(block_type(each, made_));
+    for (KindContext& each : made_->kinds) kinds.push_back(block_type(each, made_));
     return kinds;
 }
 
