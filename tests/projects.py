@@ -639,14 +639,14 @@ def check_left_over():
     twincat("rest", "POU", "Station_OLD", "FUNCTION_BLOCK Station_OLD\nVAR feed : Feed; END_VAR", "feed.gone := TRUE; missing();")
     twincat("rest", "GVL", "GVL", "VAR_GLOBAL\n spare : Feed;\nEND_VAR")
     twincat("rest", "POU", "Drawn", "FUNCTION_BLOCK Drawn\nVAR_OUTPUT n : INT; END_VAR")
-    drawn_text = (work / "rest/Drawn.TcPOU").read_text().replace("<ST><![CDATA[]]></ST>", "<CFC/>")
+    drawn_text = (work / "rest/Drawn.TcPOU").read_text().replace("<ST><![CDATA[]]></ST>", "<UML/>")
     write("rest/Drawn.TcPOU", drawn_text)
     write("rest/PlcTask.TcTTO", TASK)
     files = ["MAIN.TcPOU", "Station.TcPOU", "Feed.TcPOU", "Station_OLD.TcPOU", "Drawn.TcPOU", "GVL.TcGVL", "PlcTask.TcTTO"]
     plcproj("rest/Rest.plcproj", "Rest", files, [("Tc9_Strange", "Tc9_Strange")])
     said = run("check", "rest")
     assert "ok  rest\n" in said and "Station_OLD.TcPOU" in said and "in what nothing here uses" in said, said
-    assert "the body of 'Drawn' is drawn (CFC), and only Structured Text, LD and FBD are read, in what nothing here uses" in said, said
+    assert "the body of 'Drawn' is drawn (UML), and only Structured Text, LD, FBD and CFC are read, in what nothing here uses" in said, said
     run("new", "rest", "--from", "rest")
     text = (work / "rest.yaml").read_text()
     assert '"station.feeds[1].axis": MAIN_station_feeds_1__axis' in text and "spare.axis: globals_spare_axis" in text, text

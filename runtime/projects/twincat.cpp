@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/box_trees.hpp"
+#include "runtime/projects/drawings/function_charts.hpp"
 #include "runtime/projects/event_classes.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
@@ -159,10 +160,12 @@ class ObjectText {
                 add_lines(body);
             else if (kind == "NWL")
                 text_.append(text_of_box_trees(file_, out_, *variables_, is_kept_, body));
+            else if (kind == "CFC")
+                text_.append(text_of_function_chart(file_, out_, *variables_, is_kept_, body));
             else
                 out_.add(code::not_supported, file_.mark_of_tag(body),
                          fmt::format("the body of '{}' is drawn ({}), and only Structured Text, "
-                                     "LD and FBD are read",
+                                     "LD, FBD and CFC are read",
                                      name(named), kind),
                          "convert it to Structured Text in TwinCAT, or leave it out");
         }

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/archive.hpp"
+#include "runtime/projects/drawings/box_calls.hpp"
 #include "runtime/source/codes.hpp"
-#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
@@ -17,11 +17,6 @@ namespace {
 
 constexpr int deepest_tree = 400;
 constexpr std::size_t longest_text = 1U << 16;
-
-/// `INT`, `Lib.Type`: as the type of a variable.
-bool is_type_name(std::string_view type) {
-    return !type.empty() && shape_of(type) == Value::Form::atom && !is_digit(type.front());
-}
 
 class BoxTrees {
   public:
@@ -45,16 +40,13 @@ class BoxTrees {
 
   private:
     /// A box with what leads to it.
-    struct Box {
+    struct Box : BoxCall {
         pugi::xml_node node;
-        std::string type, instance;
-        std::vector<Value> inputs = {};
-        std::vector<std::string> names;      ///< of inputs
+        std::string instance;
         std::vector<pugi::xml_node> takers;  ///< operands at the outputs; null: none
         std::vector<std::string> outputs, output_types;
         bool has_enable = false, has_eno = false;
         Value enabled = {};  ///< empty: always
-        Mark place = {};
 
         std::size_t result() const { return has_eno ? 1 : 0; }
         /// The output that what is behind the box takes.
@@ -328,16 +320,17 @@ class BoxTrees {
 
     /// What a box is given is evaluated here.
     Box read_box(pugi::xml_node node) {
-        Box box{.node = node,
-                .type = archive_.text(node, "BoxType"),
-                .instance = archive_.text(Archive::member(node, "Instance"), "Operand"),
-                .names = archive_.strings(Archive::member(node, "InputParam"), "Names"),
-                .takers = Archive::items(
-                    Archive::member(Archive::member(node, "OutputItems"), "OutputItems")),
-                .outputs = archive_.strings(Archive::member(node, "OutputParam"), "Names"),
-                .output_types = archive_.strings(Archive::member(node, "OutputParam"), "Types"),
-                .has_enable = archive_.is_true(node, "EN"),
-                .has_eno = archive_.is_true(node, "ENO")};
+        Box box;
+        box.type = archive_.text(node, "BoxType");
+        box.names = archive_.strings(Archive::member(node, "InputParam"), "Names");
+        box.node = node;
+        box.instance = archive_.text(Archive::member(node, "Instance"), "Operand");
+        box.takers =
+            Archive::items(Archive::member(Archive::member(node, "OutputItems"), "OutputItems"));
+        box.outputs = archive_.strings(Archive::member(node, "OutputParam"), "Names");
+        box.output_types = archive_.strings(Archive::member(node, "OutputParam"), "Types");
+        box.has_enable = archive_.is_true(node, "EN");
+        box.has_eno = archive_.is_true(node, "ENO");
         box.place = place_of(node, "box " + box.type);
         const auto marks = Archive::items(Archive::member(node, "InputFlags"));
         const auto inputs = Archive::items(Archive::member(node, "InputItems"));
@@ -406,7 +399,7 @@ class BoxTrees {
         };
         write_if(now_, box.enabled, box.place);
         now_.append(called.text);
-        now_.append(arguments_of(box, true));
+        now_.append(arguments_of(box));
         now_.write(";\n", box.place);
         for (std::size_t i = box.result(); i < box.takers.size(); ++i) give(box, i, output(i));
         write_end_if(now_, box.enabled, box.place);
@@ -424,28 +417,12 @@ class BoxTrees {
         assign(box.takers[output], value);
     }
 
-    /// `(IN := a, PT := b)`; of a function without names `(a, b)`.
-    Excerpts arguments_of(const Box& box, bool is_block) {
-        Excerpts made;
-        made.write("(", box.place);
-        const bool is_named =
-            box.names.size() >= box.inputs.size() &&
-            std::ranges::none_of(box.names, [](const auto& name) { return name.empty(); });
-        std::string_view comma;
-        for (std::size_t i = 0; i < box.inputs.size(); ++i) {
-            if (box.inputs[i].is_empty()) continue;
-            made.write(comma, box.place);
-            if (is_named) made.write(box.names[i] + " := ", box.place);
-            made.append(box.inputs[i].text);
-            comma = ", ";
-        }
-        for (std::size_t i = box.result() + 1; !is_block && i < box.takers.size(); ++i) {
-            if (Archive::is_null(box.takers[i]) || i >= box.outputs.size()) continue;
-            made.write(fmt::format("{}{} => ", comma, box.outputs[i]), box.place);
-            made.append(written(box.takers[i]).text);
-            comma = ", ";
-        }
-        made.write(")", box.place);
+    /// What a function gives beside its result, to operands.
+    std::vector<std::pair<std::string, Excerpts>> outputs_of(const Box& box) {
+        std::vector<std::pair<std::string, Excerpts>> made;
+        for (std::size_t i = box.result() + 1; i < box.takers.size(); ++i)
+            if (!Archive::is_null(box.takers[i]) && i < box.outputs.size())
+                made.emplace_back(box.outputs[i], written(box.takers[i]).text);
         return made;
     }
 
@@ -460,7 +437,7 @@ class BoxTrees {
             give(box, result, value);
             write_end_if(now_, box.enabled, box.place);
             if (is_result_taken) value = written(box.takers[result]);
-        } else if (!is_result_taken && !is_operator(box)) {
+        } else if (!is_result_taken && !is_operator(box.type)) {
             write_if(now_, box.enabled, box.place);
             now_.append(value.text);
             now_.write(";\n", box.place);
@@ -487,48 +464,18 @@ class BoxTrees {
         return kept;
     }
 
-    static bool is(const Box& box, std::string_view name) { return st::same_name(box.type, name); }
-    static bool is_operator(const Box& box) {
-        return !infix_of(box.type).empty() || is(box, "and") || is(box, "or") || is(box, "not") ||
-               is(box, "move");
-    }
-
     Value result_of(const Box& box) {
-        if (is_operator(box)) {
-            if (box.inputs.empty() || std::ranges::any_of(box.inputs, &Value::is_empty)) {
-                refuse(box.place, "nothing leads to an input of this box", "connect it");
-                return words("FALSE", box.place, "BOOL");
-            }
-            if (is(box, "move")) return box.inputs.front();
-            if (is(box, "not")) return negated(box.inputs.front(), box.place);
-            if (is(box, "and") || is(box, "or")) return joined(box, is(box, "and"));
-            return joined(box, infix_of(box.type));
+        if (is_operator(box.type)) {
+            Value made = result_of_operator(box);
+            if (!made.is_empty()) return made;
+            refuse(box.place, "nothing leads to an input of this box", "connect it");
+            return words("FALSE", box.place, "BOOL");
         }
         Value made;
         if (archive_.text(box.node, "CallType") == "Function")
             made.type = box.output_type(box.result());
         made.text.write(box.type, box.place);
-        made.text.append(arguments_of(box, false));
-        return made;
-    }
-
-    Value joined(const Box& box, bool is_and) const {
-        Value made;
-        const std::string type = box.inputs.front().type;
-        for (const Value& input : box.inputs)
-            made = is_and ? both(std::move(made), input, box.place)
-                          : either(std::move(made), input, box.place);
-        if (!made.is_always) made.type = type;
-        return made;
-    }
-
-    Value joined(const Box& box, std::string_view infix) const {
-        Value made{.text = {}, .form = Value::Form::other, .type = box.inputs.front().type};
-        for (const Value& input : box.inputs) {
-            if (!made.is_empty()) made.text.write(infix, box.place);
-            made.text.append(enclosed(input, box.place));
-        }
-        if (compares(box.type)) made.type = "BOOL";
+        made.text.append(arguments_of(box, outputs_of(box)));
         return made;
     }
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "runtime/projects/drawings/values.hpp"
+
+namespace lineshaft::projects {
+
+/// A box with what leads to it, as TwinCAT keeps both kinds of networks.
+struct BoxCall {
+    std::string type;                     ///< `ADD`, or what is called
+    std::vector<Value> inputs = {};       ///< empty ones: nothing leads there
+    std::vector<std::string> names = {};  ///< of inputs
+    Mark place = {};
+};
+
+/// `INT`, `Lib.Type`: as the type of a variable.
+bool is_type_name(std::string_view type);
+
+/// Its result is an expression of what leads to it, and it has no names of inputs.
+bool is_operator(std::string_view type);
+
+/// `(IN := a, PT := b)`; of a function without names `(a, b)`; `outputs` stand behind that.
+Excerpts arguments_of(const BoxCall& box,
+                      const std::vector<std::pair<std::string, Excerpts>>& outputs = {});
+
+/// What an operator makes of its inputs. Empty: nothing leads to one of them.
+Value result_of_operator(const BoxCall& box);
+
+}  // namespace lineshaft::projects
