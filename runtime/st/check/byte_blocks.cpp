@@ -19,6 +19,12 @@ constexpr ByteBlocks functions_of_bytes[] = {{"Serialize", "SRC_VARIABLE", ""},
                                              {"UBLKMOV", "SRCBLK", "DSTBLK"},
                                              {"FILL", "BVAL", "BLK"}};
 
+/// Null: it takes its arguments as all others.
+const ByteBlocks* find_blocks(const Routine& called) {
+    if (!is_prelude(called.pou->name)) return nullptr;
+    return find_called(functions_of_bytes, called.pou->name.text, &ByteBlocks::function);
+}
+
 /// A variable that nobody can name.
 Variable& hidden(Checking& c, std::string_view role, const Type& type) {
     Routine& routine = *c.routine;
@@ -80,12 +86,23 @@ std::optional<Seen> see_bytes(Checking& c, Expression* given, bool is_written) {
 
 }  // namespace
 
+bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) {
+    const ByteBlocks* const blocks = find_blocks(called);
+    if (!blocks || call.place.source->is_prelude()) return true;
+    for (const std::string_view name : {blocks->read, blocks->written}) {
+        const Argument* given = find_called(call.arguments, name, &Argument::name);
+        if (name.empty() || (given && is_hidden(*given->value))) continue;
+        c.fail(code::not_supported, call.operands[0]->place,
+               fmt::format("{} stands in a statement of its own, or is assigned", blocks->function),
+               fmt::format("name its arguments: {}(..., {} := ...)", blocks->function, name));
+        return false;
+    }
+    return true;
+}
+
 bool rewrite_bytes(Checking& c, Statement*& s, const Routine& called) {
-    const std::string_view function = called.pou->name.text;
-    const auto* blocks = std::ranges::find_if(functions_of_bytes, [&](const ByteBlocks& known) {
-        return same_name(known.function, function);
-    });
-    if (blocks == std::end(functions_of_bytes) || !is_prelude(called.pou->name)) return false;
+    const ByteBlocks* const blocks = find_blocks(called);
+    if (!blocks) return false;
     Block before, behind;
     std::vector<Argument> arguments = s->value->arguments;
     for (Argument& argument : arguments) {

@@ -43,6 +43,8 @@ void rewrite_demux(Checking& c, Statement*& s);
 /// Serialize, BLKMOV and their like of the prelude with the bytes of a copy of what they are given.
 /// False: it is another call.
 bool rewrite_bytes(Checking& c, Statement*& s, const Routine& called);
+/// False, and told: a call of one of them stands where it cannot be given them.
+bool is_given_bytes(Checking& c, const Expression& call, const Routine& called);
 
 // test_statements.cpp
 

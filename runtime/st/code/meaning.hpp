@@ -243,8 +243,8 @@ void write_real(std::byte* to, T value, bool is_rounded);
 template <class T>
 T number_of_text(const std::byte* from, bool has_groups);
 
-/// As SCL reads it: a comma between digits is nothing, there is no exponent and no base, and a whole
-/// number that its type (of `bits`) does not hold is 0.
+/// As SCL reads it: a comma between digits is nothing, there is no exponent and no base, and a
+/// whole number that its type (of `bits`) does not hold is 0.
 std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
 double s7_real_of_text(const std::byte* from);
 
