@@ -272,7 +272,9 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     const bool is_cut = to.kind == Kind::time && !to.counts_ns && from.counts_ns &&
                         e->place.dialect().times_count_ms;
     const Wide given = is_cut ? in_whole_ms(e->constant.integer) : e->constant.integer;
-    const Wide value = to.kind == Kind::boolean ? Wide{given != 0} : wrapped(to.plain(), given);
+    const bool is_odd = given % 2 != 0, takes_lowest = e->place.dialect().vendor == Vendor::siemens;
+    const Wide value = to.kind == Kind::boolean ? Wide{takes_lowest ? is_odd : given != 0}
+                                                : wrapped(to.plain(), given);
     return become(c, e, to, {.integer = value});
 }
 
