@@ -20,6 +20,19 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.ActualVelocity" := SEL(axis.has_drive, axis.velocity, axis.actual_velocity);
 END_FUNCTION
 
+FUNCTION "AXIS_REF.VelocitySetpoint" : LREAL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.VelocitySetpoint" := axis.velocity;
+END_FUNCTION
+
+TYPE "AXIS_REF.Positioning" : STRUCT FollowingError : LREAL; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.StatusPositioning" : "AXIS_REF.Positioning"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.StatusPositioning".FollowingError :=
+        SEL(axis.has_drive, 0.0, axis.position - axis.actual_position);
+END_FUNCTION
+
 FUNCTION "AXIS_REF.StatusWord" : DWORD
 VAR_INPUT axis : AXIS_REF; END_VAR
 VAR_TEMP word : DWORD; power : LREAL; END_VAR

@@ -111,7 +111,7 @@ class FlagNet {
 
     Excerpts read(pugi::xml_node net) {
         for (const auto label : net.child("Labels").children("LabelDeclaration")) {
-            file_.copy(now_, label.child("Label").attribute("Name"));
+            now_.append(access_.label(label.child("Label")));
             now_.write(": ;\n", file_.mark_of_tag(label));
         }
         for (const auto part : net.child("Parts").children()) add_part(part);

@@ -7,6 +7,7 @@
 
 #include "runtime/projects/drawings/values.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
 
@@ -36,6 +37,12 @@ Excerpts SimaticAccess::quoted(pugi::xml_node named) const {
     return made;
 }
 
+Excerpts SimaticAccess::label(pugi::xml_node named) const {
+    Excerpts made;
+    write_name(made, named, st::word_of(named.attribute("Name").value()).has_value());
+    return made;
+}
+
 Excerpts SimaticAccess::reference(pugi::xml_node scoped) const {
     Excerpts made;
     write_components(made, scoped, is_local(scope_of(scoped)));
@@ -48,7 +55,7 @@ Excerpts SimaticAccess::text_of(pugi::xml_node access) const {
     if (const auto symbol = access.child("Symbol")) write_components(made, symbol, local);
     if (const auto constant = access.child("Constant")) write_constant(made, constant, local);
     if (const auto address = access.child("Address")) write_address(made, address);
-    if (const auto label = access.child("Label")) write_name(made, label, false);
+    if (const auto named = access.child("Label")) made.append(label(named));
     if (const auto word = access.child("PredefinedVariable")) write_name(made, word, false);
     for (const char* call : {"CallInfo", "Instruction"})
         if (const auto called = access.child(call)) write_call(made, called);

@@ -16,6 +16,8 @@ class SimaticAccess {
     Excerpts reference(pugi::xml_node scoped) const;
     /// A name in quotes.
     Excerpts quoted(pugi::xml_node named) const;
+    /// A label, in quotes where the language has a word of that name: `"FINAL"`.
+    Excerpts label(pugi::xml_node named) const;
     /// `<StructuredText>`: statements.
     Excerpts statements(pugi::xml_node tokens) const;
 

@@ -1,3 +1,4 @@
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -68,6 +69,85 @@ void rewrite_block_move(Checking& c, Statement*& s) {
         return (void)c.fail(code::type_does_not_fit, count->place, "COUNT is a whole number");
     become_lint(c, count);
     s = fills ? fill(c, *s, value, count, to) : move(c, call, value, count, to);
+    check(c, s);
+}
+
+namespace {
+
+Expression* given_as(const Expression& call, std::string_view name) {
+    const Argument* found = find_called(call.arguments, name, &Argument::name);
+    return found ? found->value : nullptr;
+}
+
+/// The element that many behind the first.
+Expression* element_behind(Checking& c, const Expression& call, Expression* array,
+                           Expression* behind) {
+    const Type* type = check(c, array);
+    if (!type || !check(c, behind)) return nullptr;
+    if (type->kind != Kind::array || type->is_open)
+        return c.fail(code::type_does_not_fit, array->place,
+                      fmt::format("MOVE_BLK_VARIANT takes arrays, not {}", describe(*type)));
+    become_lint(c, behind);
+    Expression* lower = make_constant(c, *array, lint_type, {.integer = type->lower});
+    Expression* element = make(c, E::index, call);
+    element->operands[0] = array;
+    element->arguments.push_back(
+        {.value = make_binary(c, array->place, array->place, Word::plus, lower, behind)});
+    return element;
+}
+
+}  // namespace
+
+bool rewrite_variant_move(Checking& c, Statement*& s) {
+    const Expression& call = *s->value;
+    constexpr std::string_view names[] = {"SRC", "COUNT", "SRC_INDEX", "DEST_INDEX", "DEST"};
+    for (const std::string_view name : names)
+        if (!given_as(call, name))
+            return c.fail(code::wrong_arguments, call.place,
+                          fmt::format("there is nothing at {} of MOVE_BLK_VARIANT", name)),
+                   true;
+    Expression *from = element_behind(c, call, given_as(call, "SRC"), given_as(call, "SRC_INDEX")),
+               *to = element_behind(c, call, given_as(call, "DEST"), given_as(call, "DEST_INDEX"));
+    if (!from || !to) return true;
+    Block made{make_call_statement(
+        c, make_call(c, call, make_name(c, call, "MOVE_BLK"),
+                     {{.value = from}, {.value = given_as(call, "COUNT")}, {.value = to}}))};
+    if (s->kind == S::assign)
+        made.push_back(
+            make_assignment(c, s->place, s->target, make_constant(c, call, any_integer_type, {})));
+    s = make_sequence(c, s->place, std::move(made));
+    check(c, s);
+    return true;
+}
+
+void rewrite_demux(Checking& c, Statement*& s) {
+    const StandardFunction& f = *s->value->standard;
+    Expression* otherwise = given_as(*s->value, "OUTELSE");
+    std::vector<Argument> others;
+    std::ranges::copy_if(s->value->arguments, std::back_inserter(others),
+                         [&](const Argument& given) { return given.value != otherwise; });
+    Expression* call = make_with(c, *s->value, std::move(others));
+    if (!check_count(c, *call, f) || !order_arguments(c, call, f)) return;
+    Expression *&number = call->arguments[0].value, *in = call->arguments[1].value;
+    if (!check(c, number)) return;
+    if (!number->type->is_integer() && !number->type->is_bits())
+        return (void)c.fail(code::type_does_not_fit, number->place, "K is a whole number");
+    become_lint(c, number);
+    Variable& chosen = counter(c);
+    const auto put = [&](Expression* to) {
+        return Block{make_assignment(c, s->place, to, make_copy(c, *in))};
+    };
+    Block rest;
+    if (otherwise) rest = put(otherwise);
+    for (std::size_t i = call->arguments.size(); i-- > 2;) {
+        Expression* place =
+            make_constant(c, *call, lint_type, {.integer = static_cast<Wide>(i) - 2});
+        Expression* is_this =
+            make_binary(c, s->place, s->place, Word::equal, make_use(c, *call, chosen), place);
+        rest = {make_if(c, s->place, is_this, put(call->arguments[i].value), std::move(rest))};
+    }
+    rest.insert(rest.begin(), make_assignment(c, s->place, make_use(c, *call, chosen), number));
+    s = make_sequence(c, s->place, std::move(rest));
     check(c, s);
 }
 

@@ -164,6 +164,8 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
     const bool is_output = parameter.section == Section::output;
+    const bool is_classic = value->place.dialect().vendor == Vendor::siemens && is_output;
+    if (is_classic && argument.is_named() && !is_set) argument.is_output = true;  // of STEP 7 V5
     const bool is_written_to = parameter.section == Section::in_out && is_prelude(parameter.name);
     const bool fits_sign =
         argument.is_output ? parameter.can_be_taken() || is_written_to : !is_output || is_set;
@@ -463,7 +465,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         }
     }
     if (callee.kind == E::name)
-        if (const Routine* block = block_with_method(c, callee.token)) {
+        if (const Routine* block = block_with_method(c, callee.token);
+            block && !means_standard(*e, *find_in(block->methods, callee.token.text))) {
             Routine& first = *find_in(block->methods, callee.token.text);
             Routine& method = overload_of(c, *e, block->overloads, first);
             e->is_dispatched = method.is_replaced;
@@ -475,7 +478,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
-                !take_bytes(c, e, *routine))
+                !take_bytes(c, e, *routine) || !is_given_bytes(c, *e, *routine))
                 return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);

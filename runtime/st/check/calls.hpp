@@ -21,6 +21,9 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
 /// conversion. Where none fits it is the first, whose call is refused then.
 Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
                      Routine& first);
+/// The call gives more than the method of that name takes, and what a function of the standard
+/// does.
+bool means_standard(const Expression& call, const Routine& method);
 
 // standard_calls.cpp
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
@@ -271,7 +272,9 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     const bool is_cut = to.kind == Kind::time && !to.counts_ns && from.counts_ns &&
                         e->place.dialect().times_count_ms;
     const Wide given = is_cut ? in_whole_ms(e->constant.integer) : e->constant.integer;
-    const Wide value = to.kind == Kind::boolean ? Wide{given != 0} : wrapped(to.plain(), given);
+    const bool is_odd = given % 2 != 0, takes_lowest = e->place.dialect().vendor == Vendor::siemens;
+    const Wide value = to.kind == Kind::boolean ? Wide{takes_lowest ? is_odd : given != 0}
+                                                : wrapped(to.plain(), given);
     return become(c, e, to, {.integer = value});
 }
 
@@ -340,8 +343,19 @@ static const Type* count_bits(Checking& c, Expression*& e, const Type& to) {
     return convert(c, e, to);
 }
 
+/// In SCL a DT, an LDT and a DTL become one another.
+static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
+    if (e->place.dialect().vendor != Vendor::siemens) return false;
+    const bool is_made = e->type->kind == Kind::moment && is_dtl(to),
+               is_read = is_dtl(*e->type) && to.kind == Kind::moment;
+    if (!is_made && !is_read) return false;
+    e = make_call(c, is_made ? "LDT_TO_DTL" : "DTL_TO_LDT", e);
+    return check(c, e);
+}
+
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
+    if (coerce_dtl(c, e, to)) return true;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
     if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
     const Type& from = *e->type;

@@ -45,6 +45,8 @@ std::vector<std::string> names_of(const std::vector<Variable*>& variables);
 /// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
 /// function. L0904 where there is none.
 const Type* check_member(Checking& c, Expression*& e);
+/// `DB10.DBW4`, `"Data".%DBX2.0` of a data block, as an S7 has its bytes. Empty: it is none.
+std::optional<const Type*> check_data_address(Checking& c, Expression*& e);
 /// `table[i, 2]`, `text[3]`.
 const Type* check_index(Checking& c, Expression*& e);
 /// `word.%X3`, `word.%B1`, `word.3`.

@@ -55,6 +55,47 @@ void take_numbers(Checking& c, Expression& e, bool always) {
             enumeration_becomes_number(c, e.operands[i]);
 }
 
+/// How many numbers and texts there are in it.
+std::uint64_t count_parts(const Type& type) {
+    if (type.kind == Kind::array) return type.count() * count_parts(*type.element);
+    if (type.kind != Kind::structure) return 1;
+    std::uint64_t count = 0;
+    for (const Variable* member : type.members) count += count_parts(*member->type);
+    return count;
+}
+
+/// `a.x = b.x AND a.y = b.y`
+Expression* equal_parts(Checking& c, const Expression& like, Expression* a, Expression* b,
+                        const Type& type) {
+    const auto join = [&](Word op, Expression* left, Expression* right) {
+        return left ? make_binary(c, like.place, like.token.place, op, left, right) : right;
+    };
+    Expression* made = nullptr;
+    if (type.kind == Kind::structure) {
+        for (const Variable* member : type.members)
+            made = join(Word::and_, made,
+                        equal_parts(c, like, make_member(c, a, member->text),
+                                    make_member(c, b, member->text), *member->type));
+    } else if (type.kind == Kind::array) {
+        for (std::int64_t i = type.lower; i <= type.upper; ++i)
+            made = join(
+                Word::and_, made,
+                equal_parts(c, like, make_element(c, a, i), make_element(c, b, i), *type.element));
+    }
+    return made ? made : join(Word::equal, a, b);
+}
+
+/// An S7-1500 compares structures and arrays of one type.
+bool compares_parts(const Expression& e) {
+    const Expression &left = *e.operands[0], &right = *e.operands[1];
+    const Type& type = *left.type;
+    constexpr std::uint64_t most = 256;
+    return (e.op == Word::equal || e.op == Word::unequal) &&
+           e.place.dialect().vendor == Vendor::siemens && same_type(type, *right.type) &&
+           (type.kind == Kind::structure || (type.kind == Kind::array && !type.is_open)) &&
+           !has_call(left) && !has_call(right) && count_parts(type) <= most;
+}
+
 const Type* check_comparison(Checking& c, Expression*& e) {
     take_numbers(c, *e, e->op != Word::equal && e->op != Word::unequal);
     unite_texts(c, e->operands[0], e->operands[1]);
@@ -66,6 +107,12 @@ const Type* check_comparison(Checking& c, Expression*& e) {
     if (is_dtl(*e->operands[0]->type) && is_dtl(*e->operands[1]->type)) become_moments(c, *e);
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     const bool order = e->op != Word::equal && e->op != Word::unequal;
+    if (compares_parts(*e)) {
+        const bool differs = e->op == Word::unequal;
+        e = equal_parts(c, *e, e->operands[0], e->operands[1], a);
+        if (differs) e = make_not(c, e);
+        return check(c, e);
+    }
     if (!order && is_kind(Kind::interface)) {
         const int other = e->operands[0]->type->kind == Kind::interface ? 1 : 0;
         Expression*& operand = e->operands[other];

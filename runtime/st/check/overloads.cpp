@@ -1,6 +1,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
@@ -72,6 +73,13 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
 }
 
 }  // namespace
+
+bool means_standard(const Expression& call, const Routine& method) {
+    const StandardFunction* f = find_standard_function(method.pou->name.text);
+    const int count = static_cast<int>(call.arguments.size());
+    return f && count >= f->least && count <= f->most &&
+           call.arguments.size() > parameters_of(method).size();
+}
 
 Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
                      Routine& first) {

@@ -138,6 +138,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (type->is_instance() && same_name(name, "eno"))  // what has no such output was executed
         return become(c, e, bool_type, {.integer = 1});
     if (const Type* bit = check_named_bit(c, e, *type)) return bit;
+    if (const auto address = check_data_address(c, e)) return *address;
     return fail_member(c, *e, *type, name);
 }
 
@@ -192,6 +193,7 @@ const Type* check_bit(Checking& c, Expression*& e) {
         {'X', 1, "bits"}, {'B', 8, "bytes"}, {'W', 16, "words"}, {'D', 32, "double words"}};
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
+    if (const auto address = check_data_address(c, e)) return *address;
     std::string_view text = e->token.text;
     const Part* known = parts;
     if (e->token.word == Word::direct) {

@@ -318,8 +318,27 @@ const Type* check_capacity(Checking& c, Expression*& e) {
     return &int_type;
 }
 
-/// S_CONV is the conversion that has a name.
+/// Of T_CONV; empty: it is no conversion of or to a DTL.
+std::string_view conversion_of_dtl(const Type& from, const Type& to) {
+    if (is_dtl(from))
+        return to.kind == Kind::date     ? "DTL_TO_DATE"
+               : to.kind == Kind::clock  ? "DTL_TO_TOD"
+               : to.kind == Kind::moment ? "DTL_TO_LDT"
+                                         : "";
+    if (!is_dtl(to)) return {};
+    return from.kind == Kind::date     ? "DATE_TO_DTL"
+           : from.kind == Kind::clock  ? "TOD_TO_DTL"
+           : from.kind == Kind::moment ? "LDT_TO_DTL"
+                                       : "";
+}
+
+/// S_CONV and T_CONV are the conversion that has a name.
 const Type* check_wanted(Checking& c, Expression*& e, const Type* expected) {
+    Expression* given = e->arguments[0].value;
+    if (expected && (is_dtl(*given->type) || is_dtl(*expected))) {
+        const std::string_view name = conversion_of_dtl(*given->type, *expected);
+        if (!name.empty()) return check(c, e = make_call(c, name, given));
+    }
     const bool is_known = expected && (expected->kind == Kind::text ||
                                        (expected->is_scalar() && !expected->is_any()));
     if (!is_known)

@@ -32,6 +32,20 @@ const Type* use_edge(Checking& c, Expression*& e, Variable& input);
 /// arrays; beyond an array is a fault. Its arguments are in their order.
 void rewrite_block_move(Checking& c, Statement*& s);
 
+/// MOVE_BLK_VARIANT as MOVE_BLK between elements of two arrays; it gives 0. False: it is another
+/// call.
+bool rewrite_variant_move(Checking& c, Statement*& s);
+/// DEMUX as an IF for each of its outputs.
+void rewrite_demux(Checking& c, Statement*& s);
+
+// byte_blocks.cpp
+
+/// Serialize, BLKMOV and their like of the prelude with the bytes of a copy of what they are given.
+/// False: it is another call.
+bool rewrite_bytes(Checking& c, Statement*& s, const Routine& called);
+/// False, and told: a call of one of them stands where it cannot be given them.
+bool is_given_bytes(Checking& c, const Expression& call, const Routine& called);
+
 // test_statements.cpp
 
 /// A variable, a member or an element.

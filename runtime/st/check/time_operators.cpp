@@ -46,8 +46,22 @@ void become_moments(Checking& c, Expression& e) {
         if (is_dtl(*operand->type)) check(c, operand = make_call(c, "DTL_TO_LDT", operand));
 }
 
+/// `time + 5` and `tod - 5` are of ms where a DINT is a TIME, and a LINT beside LTIME and LTOD of
+/// ns.
+static bool take_count(Checking& c, Expression& e) {
+    const Type &time = *e.operands[0]->type, &number = *e.operands[1]->type;
+    const bool counts = e.place.dialect().dint_is_time && number.is_integer() &&
+                        (e.op == Word::plus || e.op == Word::minus) &&
+                        (time.kind == Kind::time || time.kind == Kind::clock);
+    if (!counts) return true;
+    if (!coerce(c, e.operands[1], time.counts_ns ? lint_type : dint_type)) return false;
+    convert(c, e.operands[1], time.counts_ns ? ltime_type : time_type);
+    return true;
+}
+
 const Type* check_time_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
+    if (!take_count(c, *e)) return nullptr;
     Expression *&left = e->operands[0], *&right = e->operands[1];
     if (left->type->is_date() || right->type->is_date()) return check_date_arithmetic(c, e);
     const bool both = left->type->kind == Kind::time && right->type->kind == Kind::time;

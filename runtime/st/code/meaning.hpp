@@ -206,12 +206,16 @@ bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 
+/// In a number of room: what is no character of the text is read as 0 and not written, but for one
+/// right behind its end.
+inline constexpr std::uint32_t of_s7 = std::uint32_t{1} << 30;
+
 /// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.
 std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
                                           std::uint32_t room);
 
 /// A 0 ends the text there. False if the text is shorter.
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint32_t room);
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room);
 
 /// The byte at `place` (from 0) of a text that has room for so many and the 0 that ends it; behind
 /// its end it is 0.
@@ -239,6 +243,11 @@ void write_real(std::byte* to, T value, bool is_rounded);
 /// whole number may be `16#FF`, and where digits may stand in groups `2#1111_0000`.
 template <class T>
 T number_of_text(const std::byte* from, bool has_groups);
+
+/// As SCL reads it: a comma between digits is nothing, there is no exponent and no base, and a
+/// whole number that its type (of `bits`) does not hold is 0.
+std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
+double s7_real_of_text(const std::byte* from);
 
 std::uint64_t truth_of_text(const std::byte* from);
 

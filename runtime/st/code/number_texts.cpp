@@ -117,6 +117,41 @@ T number_of_text(const std::byte* from, bool has_groups) {
     return is_negative ? -value : value;
 }
 
+/// Sign, digits, point and digits.
+static std::string s7_number(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const bool has_sign = text.starts_with('-') || text.starts_with('+');
+    std::string read = text.starts_with('-') ? "-" : "";
+    if (has_sign) text.remove_prefix(1);
+    bool has_point = false;
+    for (const char c : text) {
+        const bool is_comma = c == ',' && !has_point, is_point = c == '.' && !has_point;
+        if (!is_comma && !is_point && (c < '0' || c > '9')) break;
+        has_point |= is_point;
+        if (!is_comma) read += c;
+    }
+    return read;
+}
+
+std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed) {
+    const std::string number = s7_number(text_at(from));
+    const bool is_negative = number.starts_with('-');
+    const char *first = number.data() + (is_negative ? 1 : 0), *end = number.data() + number.size();
+    std::uint64_t value = 0;
+    if (std::from_chars(first, end, value).ec != std::errc()) return 0;
+    const std::uint64_t half = std::uint64_t{1} << (bits - 1),
+                        most = !is_signed ? half - 1 + half : half - 1;
+    if (is_negative) return is_signed && value <= half ? 0 - value : 0;
+    return value <= most ? value : 0;
+}
+
+double s7_real_of_text(const std::byte* from) {
+    const std::string number = s7_number(text_at(from));
+    double value = 0.0;
+    std::from_chars(number.data(), number.data() + number.size(), value, std::chars_format::fixed);
+    return value;
+}
+
 template void write_number(std::byte*, std::int64_t, bool);
 template void write_number(std::byte*, std::uint64_t, bool);
 template void write_real(std::byte*, double, bool);

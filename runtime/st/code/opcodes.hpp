@@ -177,7 +177,7 @@
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
     OP(text_byte, text, "wrrr", if (const auto n = byte_of_text(target(U(b)), I(c), U(d))) put(a, *n); else FAIL(array_bounds)) \
     OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
-    OP(set_character, text, "rrrn", if (!set_character(target(U(b)), I(c), U(a), d)) FAIL(array_bounds)) \
+    OP(set_character, text, "rrrr", if (!set_character(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
     OP(text_find, text, "wrrn", put(a, find_text(target(U(b)), target(U(c)), d != 0)))               \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
@@ -185,6 +185,8 @@
     OP(text_of_float, text, "rrn-", write_real(target(U(a)), static_cast<float>(R(b)), c != 0))      \
     OP(integer_of_text, text, "wrn-", put(a, number_of_text<std::uint64_t>(target(U(b)), c != 0)))    \
     OP(real_of_text, text, "wrn-", put(a, number_of_text<double>(target(U(b)), c != 0)))             \
+    OP(s7_integer_of_text, text, "wrnn", put(a, s7_integer_of_text(target(U(b)), c, d != 0)))         \
+    OP(s7_real_of_text, text, "wr--", put(a, s7_real_of_text(target(U(b)))))                         \
     OP(text_of_truth, text, "rr--", write_truth(target(U(a)), U(b) != 0))                          \
     OP(text_of_time, text, "rrn-", write_time(target(U(a)), c, I(b)))                               \
     OP(truth_of_text, text, "wr--", put(a, truth_of_text(target(U(b)))))                             \

@@ -62,8 +62,9 @@ std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
 
 std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
                                           std::uint32_t room) {
-    if (place < 1 || place > std::int64_t{room & ~of_units}) return {};
-    if ((room & of_units) != 0) return byte_of_text(from, place - 1, room);
+    const bool is_there = place >= 1 && place <= std::int64_t{room & ~(of_units | of_s7)};
+    if (!is_there) return (room & of_s7) != 0 ? std::optional<std::uint64_t>(0) : std::nullopt;
+    if ((room & of_units) != 0) return byte_of_text(from, place - 1, room & ~of_s7);
     const auto at = static_cast<std::uint64_t>(place - 1);
     return at < word(from, 0) ? byte(from + 8, at) : 0;
 }
@@ -76,10 +77,23 @@ static bool set_unit(std::byte* text, std::uint64_t at, std::uint64_t value, std
     return true;
 }
 
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint32_t room) {
+static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t value,
+                          std::uint64_t room) {
+    const bool is_wide = (room & of_units) != 0;
+    const std::uint64_t at = static_cast<std::uint64_t>(place) - 1,
+                        length = length_of_text(text, is_wide), most = room & (of_s7 - 1);
+    if (at > length || at >= most) return true;
+    if (is_wide) return set_unit(text, at, value, most);
+    set_byte(text + 8, at, value);
+    if (at == length) set_word(text, 0, length + 1);
+    return true;
+}
+
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room) {
+    if ((room & of_s7) != 0) return set_or_append(text, place, value, room);
     const auto at = static_cast<std::uint64_t>(place) - 1;
     if ((room & of_units) != 0)
-        return at < count_units(text_at(text)) && set_unit(text, at, value, room & ~of_units);
+        return at < count_units(text_at(text)) && set_unit(text, at, value, room & (of_units - 1));
     const bool is_there = at < word(text, 0);
     if (is_there) set_byte(text + 8, at, value);
     if (is_there && value == 0) set_word(text, 0, at);

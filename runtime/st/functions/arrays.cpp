@@ -18,6 +18,8 @@ constexpr StandardFunction arrays[] = {
     {"FILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "writes IN to COUNT elements of an array, from OUT on",
      Typing::statement, nullptr},
     {"UFILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as FILL_BLK", Typing::statement, nullptr},
+    {"DEMUX(K: ANY_INT; IN: ANY; OUT0, ...: ANY)", "writes IN to the output of number K, from 0 on, or to OUTELSE if there is none",
+     Typing::statement, nullptr},
 };
 // clang-format on
 

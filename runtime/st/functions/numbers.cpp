@@ -47,7 +47,13 @@ Slot emit_extremum(Emission& e) {
 
 Slot emit_limit(Emission& e) {
     const Slot mn = e.value(0), in = e.value(1), mx = e.value(2);
-    return e.result(least(e), e.emit(greatest(e), in, mn), mx);
+    if (e.call.place.dialect().vendor != Vendor::siemens)
+        return e.result(least(e), e.emit(greatest(e), in, mn), mx);
+    const Slot limited = e.emit(least(e), e.emit(greatest(e), in, mn), mx);
+    e.put(e.of_number(Op::move_if_lt_float, Op::move_if_lt_unsigned, Op::move_if_lt_signed), mx, mn,
+          limited, in);
+    e.land();
+    return limited;
 }
 
 Slot emit_select(Emission& e) {
@@ -99,7 +105,7 @@ constexpr StandardFunction numbers[] = {
      Typing::common, emit_extremum, Op::min_signed},
     {"MAX(IN1, IN2, ...: ANY_ORDERED): ANY_ORDERED", "the greatest of its arguments",
      Typing::common, emit_extremum, Op::max_signed},
-    {"LIMIT(MN, IN, MX: ANY_ORDERED): ANY_ORDERED", "IN, but at least MN and at most MX",
+    {"LIMIT(MN, IN, MX: ANY_ORDERED): ANY_ORDERED", "IN, but at least MN and at most MX; in SCL IN where MN is above MX",
      Typing::common, emit_limit},
     {"SEL(G: BOOL; IN0, IN1: ANY): ANY", "IN1 if G, else IN0", Typing::chosen, emit_select},
     {"MUX(K: ANY_INT; IN0, ...: ANY): ANY",

@@ -12,11 +12,22 @@ struct Parts {
 
     Slot sum(Slot a, Slot b) const { return e.emit(Op::add_lint, a, b); }
     Slot difference(Slot a, Slot b) const { return e.emit(Op::sub_lint, a, b); }
+    /// In SCL there is nothing to give where a number is not above `limit`.
+    void expect_above(std::int64_t limit, Slot number) {
+        if (!is_siemens) return;
+        const Slot holds =
+            e.emit(Op::lt_signed, e.constant(static_cast<std::uint64_t>(limit)), number);
+        most = e.emit(Op::mul_lint, most, holds);
+    }
     void begin() { made = e.new_text(); }
-    void append(Slot from, Slot first, Slot count) const { e.append(made, from, first, count); }
+    void append(Slot from, Slot first, Slot count) const {
+        if (most != all) count = e.emit(Op::min_signed, count, most);
+        e.append(made, from, first, count);
+    }
 
     Emission& e;
-    Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30);
+    const bool is_siemens = e.call.place.dialect().vendor == Vendor::siemens;
+    Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30), most = all;
     Slot in = e.text(0);
     Slot made = 0;
 };
@@ -50,6 +61,7 @@ Slot emit_right(Emission& e) {
 Slot emit_middle(Emission& e) {
     Parts parts(e);
     const Slot count = e.value(1), place = e.value(2);
+    parts.expect_above(0, place);
     parts.begin();
     parts.append(parts.in, parts.difference(place, parts.one), count);
     return parts.made;
@@ -58,6 +70,8 @@ Slot emit_middle(Emission& e) {
 Slot emit_delete(Emission& e) {
     Parts parts(e);
     const Slot count = e.value(1), before = parts.difference(e.value(2), parts.one);
+    parts.expect_above(-1, count);
+    parts.expect_above(-1, before);
     parts.begin();
     parts.append(parts.in, parts.zero, before);
     parts.append(parts.in, parts.sum(before, count), parts.all);
@@ -65,6 +79,8 @@ Slot emit_delete(Emission& e) {
 }
 
 Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count) {
+    parts.expect_above(-1, count);
+    parts.expect_above(-1, before);
     parts.begin();
     parts.append(parts.in, parts.zero, before);
     parts.append(other, parts.zero, parts.all);
@@ -92,7 +108,9 @@ Slot emit_find(Emission& e) {
 }
 
 // clang-format off
-/// Characters are counted from 1. A text that is made has at most 254.
+/// Characters are counted from 1. A text that is made has at most 254. In SCL MID, DELETE, INSERT
+/// and REPLACE give an empty text if P is 0 (INSERT: below 0) or below, or L is below 0, as TIA
+/// Portal's help says.
 constexpr StandardFunction texts[] = {
     {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
      [](Emission& e) { return e.result(Op::text_length, e.text(0), e.is_wide()); }},

@@ -50,6 +50,8 @@ constexpr StandardFunction times[] = {
     {"CONCAT_DATE_LTOD(IN1: DATE; IN2: LTOD): LDT", "the time of day IN2 of the date IN1", Word::plus},
     {"T_ADD(IN1: ANY_MAGNITUDE; IN2: TIME): ANY_MAGNITUDE", "IN1 + IN2, of a TIME, a TOD or a DT", Word::plus},
     {"T_SUB(IN1: ANY_MAGNITUDE; IN2: TIME): ANY_MAGNITUDE", "IN1 - IN2, of a TIME, a TOD or a DT", Word::minus},
+    {"T_CONV(IN: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN as what is wanted, as TIME_TO_DINT(IN) gives it; also of and to a DTL",
+     Typing::wanted, nullptr},
     {"T_DIFF(IN1, IN2: ANY_MAGNITUDE): TIME", "IN1 - IN2, of two of DATE, TOD or DT", Word::minus},
 };
 // clang-format on

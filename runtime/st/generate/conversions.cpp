@@ -161,6 +161,21 @@ Slot convert_wide(Writing& w, Slot slot, const Type& to, Slot wanted) {
     return to.bits == 64 ? slot : w.emit(of_type(Op::wrap_sint, to.plain()), wanted, slot);
 }
 
+/// Written in SCL, and not for the prelude's own use.
+static bool is_of_s7(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
+}
+
+static bool is_whole_number(const Type& type) {
+    return (type.is_integer() || type.is_bits()) && !type.is_character;
+}
+
+static Slot s7_integer_of(Writing& w, Slot text, const Type& type, Slot wanted) {
+    const Slot to = w.result(wanted);
+    w.put(Op::s7_integer_of_text, to, text, static_cast<Slot>(type.bits), type.is_signed);
+    return to;
+}
+
 Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
@@ -175,8 +190,11 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
         const Slot groups = e.place.dialect().vendor == Vendor::codesys ? 1 : 0;
+        const bool is_s7 = is_of_s7(e);
+        if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
         if (e.type->kind == Kind::real) {
-            const Slot real = w.emit(Op::real_of_text, none, text, groups);
+            const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
+                                    : w.emit(Op::real_of_text, none, text, groups);
             return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
         }
         if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
@@ -202,6 +220,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(), false,
                                wanted);
     Slot from = value(w, operand);
+    if (e.type->kind == Kind::boolean && is_of_s7(e) && is_whole_number(*operand.type))
+        return w.emit(Op::and_bits, wanted, from, w.constant_slot(1));
     if (e.conversion.rounds_away) from = w.emit(Op::round_away, none, from);
     return convert(w, from, *operand.type, *e.type, e.conversion.truncates, wanted);
 }

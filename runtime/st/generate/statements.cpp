@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -16,10 +17,12 @@ void write_character(Writing& w, const Statement& s) {
     const Location at = locate(w, text);
     const Slot place = at.packed ? load_packed_text(w, at) : address_of(w, at);
     const Slot index = value(w, *s.target->arguments[0].value);
-    if (s.target->place.dialect().texts_are_bytes)
-        w.put(Op::set_text_byte, from, place, index, capacity_of(w, at, *text.type));
-    else
-        w.put(Op::set_character, from, place, index, text.type->room());
+    const Dialect& dialect = s.target->place.dialect();
+    Slot room = capacity_of(w, at, *text.type);
+    if (dialect.vendor == Vendor::siemens)
+        room = w.emit(Op::or_bits, none, room, w.constant_slot(meaning::of_s7));
+    w.put(dialect.texts_are_bytes ? Op::set_text_byte : Op::set_character, from, place, index,
+          room);
     if (at.packed) store_packed_text(w, at, place);
 }
 

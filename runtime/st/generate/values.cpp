@@ -1,5 +1,6 @@
 #include "runtime/st/generate/values.hpp"
 
+#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {
@@ -157,11 +158,13 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
     const Expression& text = *e.operands[0];
     const Slot address = text_address(w, text), index = value(w, *e.arguments[0].value);
     const Slot to = w.result(wanted);
-    if (e.place.dialect().texts_are_bytes)
+    const Dialect& dialect = e.place.dialect();
+    if (dialect.texts_are_bytes)
         w.put(Op::text_byte, to, address, index,
               text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->room()));
     else
-        w.put(Op::text_character, to, address, index, text.type->room());
+        w.put(Op::text_character, to, address, index,
+              text.type->room() | (dialect.vendor == Vendor::siemens ? meaning::of_s7 : 0));
     return to;
 }
 

@@ -7,7 +7,7 @@ namespace lineshaft::st {
 
 /// Standard types and functions that are Structured Text themselves: DTL and its conversions, those
 /// of IEC 61131-3:2013, table 35, that put dates together and take them apart, and Siemens' of
-/// texts, characters, decimal digits, the clock and the process image. What is no date (the 30th of
+/// texts, characters, digits, bytes, the clock and the process image. What is no date (the 30th of
 /// February) is the fault `out_of_range`. A source may declare one of their names itself.
 const std::shared_ptr<const SourceFile>& standard_source();
 

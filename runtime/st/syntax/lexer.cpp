@@ -434,6 +434,9 @@ class Lexer {
         ++at_;
         skip_while([](char c) { return is_letter(c) || is_digit(c); });
         const bool partial = is_after_dot();
+        const std::string_view named = text_.substr(start_ + 1, at_ - start_ - 1);
+        if (!partial && tokens_.source->dialect.packs_as_s7 && is_data_block(named))
+            return ++start_, void(add(Word::name));
         while (!partial && peek() == '.' && is_digit(peek(1))) {
             ++at_;
             skip_while(is_digit);

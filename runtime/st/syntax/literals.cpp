@@ -221,6 +221,11 @@ std::optional<std::string> read_text(std::string_view text, bool is_wide) {
     return out;
 }
 
+bool is_data_block(std::string_view text) {
+    return text.size() > 2 && upper(text[0]) == 'D' && upper(text[1]) == 'B' &&
+           std::ranges::all_of(text.substr(2), is_digit);
+}
+
 std::optional<ImageAddress> read_classic_address(std::string_view text) {
     constexpr std::string_view sizes = "BWD";
     const bool has_size = text.size() > 1 && sizes.find(upper(text[1])) != sizes.npos;

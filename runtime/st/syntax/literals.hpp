@@ -31,6 +31,8 @@ std::optional<std::string> read_text(std::string_view text, bool is_wide = false
 
 /// `M0.3`, `EW4`: as STEP 7 V5 writes addresses, without a '%', the areas in German, too (E, A).
 std::optional<ImageAddress> read_classic_address(std::string_view text);
+/// `DB10`
+bool is_data_block(std::string_view text);
 
 std::string to_string(Wide value);
 

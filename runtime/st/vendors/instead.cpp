@@ -22,21 +22,14 @@ constexpr Instead types_of_vendors[] = {
     {" timer ", "declare an instance of TON, TOF or TP"}};
 
 constexpr Instead functions_of_vendors[] = {
-    {" move_blk_variant ", "assign the array as a whole, or its elements in a FOR"},
-    {" blkmov ", "assign the structure as a whole"},
-    {" serialize deserialize ", "assign the parts one by one"},
     {" sizeof ", "declare the size as a constant"},
     {" adr ref ", "pass the variable as VAR_IN_OUT"},
     {" typeof is_array ", "write a block for each type"},
     {" wr_sys_t ", "leave it out: the clock is that of the run, which begins 1970-01-01"},
     {" int_to_bcd ", "write INT_TO_BCD16(x)"},
-    {" runtime ", "a controller's 'instruction_time' gives what code costs"},
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
     {" s_move ", "assign the STRING with ':='"},
-    {" t_conv ", "write a conversion, as TIME_TO_DINT(x)"},
-    {" fill ", "assign the elements in a FOR"},
     {" join ", "write CONCAT(a, b, ...)"},
-    {" demux ", "write a CASE"},
     {" wait ", "count the time with a TON"},
     {" stp ", "end the run with 'run: {until: ...}' in the program"},
     {" re_trigr ", "leave it out: 'maximum_cycle_time' says how long a scan may last"},

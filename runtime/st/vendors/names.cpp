@@ -68,10 +68,12 @@ constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2
                                           "sm3_robotics", "plcopen",        "system.math",
                                           "system.timer", "system.strings", "system.datetime"};
 
-constexpr AddedInput added_inputs[] = {
-    {"StartMode"},    {"StopMode"},    {"Restart"},    {"PositionControlled"},
-    {"bRegulatorOn"}, {"bDriveStart"}, {"Current", 0}, {"AbortAcceleration", 0},
-    {"Override", 100}};
+constexpr AddedInput added_inputs[] = {{"StartMode"},       {"StopMode"},
+                                       {"Restart"},         {"PositionControlled"},
+                                       {"bRegulatorOn"},    {"bDriveStart"},
+                                       {"Current", 0},      {"AbortAcceleration", 0},
+                                       {"Override", 100},   {"SyncProfileReference", 1},
+                                       {"SyncDirection", 3}};
 
 /// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode: 0 and 1 are direct
 /// homing, 6, 7, 11 and 12 adjust an encoder or the set-point alike.
