@@ -789,6 +789,8 @@ def check_suites_of_programs():
             [("TcUnit", "TcUnit")])
     assert "3 of 3 passed" in run("test", "apart")
     listed = run("test", "apart", "--list")
+    printed = re.search(r"(\S+: Called\.group\.suites\[2\]: counts)", run("test", "apart"))[1]
+    assert "1 of 1 passed" in run("test", "apart", "--filter", re.escape(printed))
     assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
 
 
