@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -617,6 +618,32 @@ def check_qualified_names():
     assert "1 of 1 passed" in said, said
 
 
+def check_openplc_editor():
+    """The folder of a project, or its project.json: tasks, ladders with their places, and nothing of what the editor builds."""
+    shutil.copytree(pathlib.Path(__file__).parent / "cases" / "openplc_editor_4", work / "editor4")
+    (work / "editor4/program.yaml").unlink()
+    write("editor4/build/Simulator/src/program.st", "PROGRAM main\nEND_PROGRAM\n")
+    assert "ok" in run("check", "--strict", "editor4/")
+    assert "ok" in run("check", "--strict", "editor4/project.json")
+    run("new", "lamp", "--from", "editor4/")
+    made = (work / "lamp.yaml").read_text()
+    assert "task0: {every: 20 ms" in made and "main: {type: main, task: task0}" in made, made
+    run("run", "lamp.yaml", "--include-dir", "editor4/")
+    ladder = work / "editor4/pous/programs/main.ld"
+    text = ladder.read_text()
+    ladder.write_text(text.replace('"name": "held"', '"name": "hled"'))
+    line = text[:text.index('"name": "held"')].count("\n") + 1
+    said = run("check", "editor4/", code=2)
+    assert f"main.ld:{line}:" in said and "'hled'" in said, said
+    ladder.write_text(text.replace('"variant": "set"', '"variant": "sett"'))
+    assert "'sett' is no kind of coil" in run("check", "editor4/", code=2)
+    ladder.write_text(text[:text.index("{")])
+    assert "has no rungs" in run("check", "editor4/", code=2)
+    ladder.write_text(text)
+    write("editor4/pous/functions/drawn.fbd", "FUNCTION drawn : INT\n\n{\n}\nEND_FUNCTION\n")
+    assert "drawn.fbd:1:1: error" in run("check", "editor4/", code=2)
+
+
 def check_lost_bases():
     """What a base that is not here would have is told by no message but the one of the library."""
     twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
@@ -762,6 +789,8 @@ def check_suites_of_programs():
             [("TcUnit", "TcUnit")])
     assert "3 of 3 passed" in run("test", "apart")
     listed = run("test", "apart", "--list")
+    printed = re.search(r"(\S+: Called\.group\.suites\[2\]: counts)", run("test", "apart"))[1]
+    assert "1 of 1 passed" in run("test", "apart", "--filter", re.escape(printed))
     assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
 
 
@@ -869,6 +898,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_solution()
     check_named_programs()
     check_qualified_names()
+    check_openplc_editor()
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()

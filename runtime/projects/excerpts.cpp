@@ -36,6 +36,7 @@ PlacedFile::PlacedFile(std::shared_ptr<const SourceFile> file) : file_(std::move
 }
 
 Mark PlacedFile::mark(Part part) const {
+    if (!file_->excerpts.empty()) return mark_of(file_, part.begin, part.end);
     const std::size_t step = part.begin / step_bytes;
     Mark mark = steps_[step];
     mark.file = file_;
@@ -49,10 +50,17 @@ Mark PlacedFile::mark(Part part) const {
 
 void Excerpts::copy(const PlacedFile& from, Part part) {
     if (part.begin == part.end) return;
-    Mark place = from.mark(part);
-    place.length = 1;
-    place.drawn = drawn_;
-    excerpts_.push_back({text_.size(), std::move(place), true});
+    const auto copy_from = [&](std::size_t begin, bool is_copied) {
+        Mark place = from.mark({begin, part.end});
+        if (is_copied) place.length = 1;
+        place.drawn = drawn_;
+        excerpts_.push_back({text_.size() + begin - part.begin, std::move(place), is_copied});
+    };
+    const auto& parts = from.file()->excerpts;
+    const auto next = std::ranges::upper_bound(parts, part.begin, {}, &Excerpt::begin);
+    copy_from(part.begin, parts.empty() || std::prev(next)->is_copied);
+    for (auto it = next; it != parts.end() && it->begin < part.end; ++it)
+        copy_from(it->begin, it->is_copied);
     text_ += from.text(part);
 }
 

@@ -26,8 +26,8 @@ bool is_of_codesys(const XmlFile& file) {
 /// One project of PLCopen XML.
 class PlcopenProject {
   public:
-    PlcopenProject(const XmlFile& file, const Reading& to)
-        : file_(file), declared_(declared_types(file)), to_(to) {}
+    PlcopenProject(const XmlFile& file, const Reading& to, bool is_of_matiec)
+        : file_(file), declared_(declared_types(file)), to_(to), is_of_matiec_(is_of_matiec) {}
 
     void read() {
         const pugi::xml_node root = file_.root();
@@ -121,7 +121,7 @@ class PlcopenProject {
     const XmlFile& file_;
     const DeclaredTypes declared_;
     const Reading& to_;
-    const bool is_of_matiec_ = !is_of_codesys(file_);
+    const bool is_of_matiec_;
 };
 
 }  // namespace
@@ -142,7 +142,11 @@ void read_plcopen(const Reading& to, const std::string& path, const Mark& where)
         return to.out.add(code::not_an_object, file->mark_of_tag(file->root()),
                           fmt::format("<{}> is no project of PLCopen XML", file->root().name()),
                           "its files begin with <project>");
-    PlcopenProject(*file, to).read();
+    PlcopenProject(*file, to, !is_of_codesys(*file)).read();
+}
+
+void read_plcopen_of_matiec(const Reading& to, const XmlFile& file) {
+    PlcopenProject(file, to, true).read();
 }
 
 }  // namespace lineshaft::projects

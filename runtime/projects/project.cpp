@@ -8,6 +8,7 @@
 #include "runtime/projects/automation_studio.hpp"
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
+#include "runtime/projects/openplc.hpp"
 #include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/simatic_ml.hpp"
@@ -171,6 +172,7 @@ bool is_source(const fs::path& file) {
     if (is_of_hardware(file)) return false;
     if (form && form->read == read_xml) return is_plcopen(file) || is_simatic_ml(file);
     if (form && form->read == read_iec_program) return is_iec_program(file);
+    if (is_openplc_project(file) || is_openplc_pou(file)) return true;
     return is_apax(file) || form || is_structured_text(file);
 }
 
@@ -187,6 +189,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     std::erase_if(files, is_of_a_linker);
     std::erase_if(files, is_built);
     std::erase_if(files, is_of_no_source);
+    std::erase_if(files, is_left_to_openplc);
     leave_to_projects(files);
     std::ranges::sort(files);
     return files;
@@ -197,6 +200,8 @@ void read_sources(const Reading& to, const std::string& path, const Mark& where)
     if (is_apax(path)) return read_apax(to, path, where);
     if (is_software_of_cpu(path)) return read_task_classes(to, path, where);
     if (is_mapp_configuration(path)) return read_mapp_configuration(to, path, where);
+    if (is_openplc_project(path)) return read_openplc_project(to, path, where);
+    if (is_openplc_pou(path)) return read_openplc_pou(to, path, where);
     return form ? form->read(to, path, where) : read_text(to, path, where);
 }
 

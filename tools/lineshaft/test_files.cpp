@@ -332,13 +332,15 @@ std::vector<SuiteEntry> test_suites(const TestFile& tests,
         (wall_seconds() - start) / static_cast<double>(std::max<std::size_t>(1, ran->size()));
     std::vector<SuiteEntry> entries;
     for (const st::SuiteTest& test : *ran) {
-        if (!passes(full_name(tests, test.test), options)) continue;
+        const std::string& file = test.test.mark.file->path;
+        const std::string printed = fmt::format("{}: {}", file, test.test.name);
+        if (!passes(full_name(tests, test.test), options) && !passes(printed, options)) continue;
         SuiteEntry& entry =
             entries.emplace_back(SuiteEntry{.name = test.test.name,
                                             .wall_seconds = each,
                                             .failures = {},
                                             .error = test.result.is_fault,
-                                            .file = test.test.mark.file->path,
+                                            .file = file,
                                             .line = static_cast<int>(test.test.mark.line)});
         if (test.skipped) entry.skipped = "disabled by its name";
         if (!test.result.failure.empty()) entry.failures.push_back(failure_text(test.result));

@@ -23,7 +23,8 @@ struct TestFile {
 
 struct TestOptions {
     std::vector<std::string> include_dirs;
-    std::optional<std::regex> filter;  ///< searched in `path` or `path: name of a TEST`
+    std::optional<std::regex> filter;  ///< searched in `path` or `path: name of a TEST`; a suite's
+                                       ///< path is that of the project or of the suite's file
     bool strict = false;
     bool slow = false;          ///< files marked `slow: true`, too
     unsigned jobs = 1;          ///< of a study's or fit's runs

@@ -62,8 +62,29 @@ Slot unary(Writing& w, const Expression& e, Slot wanted) {
     return w.emit(of_type(Op::neg_sint, type), wanted, operand);
 }
 
+/// The block whose place THIS or ADR gives, without a pointer on the way; null: something else.
+const Expression* block_of_reference(const Expression& e) {
+    if (e.kind == E::converted && !e.conversion.is_attempt)
+        return block_of_reference(*e.operands[0]);
+    if (e.kind != E::refer || e.operands[0]->type->kind != Kind::block) return nullptr;
+    const Expression* at = e.operands[0];
+    while (at->kind == E::member || at->kind == E::index) at = at->operands[0];
+    return at->kind == E::name || at->kind == E::self ? e.operands[0] : nullptr;
+}
+
+/// A reference to a part of something tells the way to it, which THIS of that part does not know.
+bool is_compared_by_place(const Expression* left, const Expression* right) {
+    return left && right && (left->kind == E::self || right->kind == E::self);
+}
+
 Slot comparison(Writing& w, const Expression& e, Slot wanted) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
+    const Expression* const first = block_of_reference(left);
+    const Expression* const second = block_of_reference(right);
+    if (is_compared_by_place(first, second)) {
+        const Slot a = address_of(w, locate(w, *first)), b = address_of(w, locate(w, *second));
+        return compare(w, e.op, lint_type, a, b, wanted);
+    }
     if (left.type->is_reference())
         return compare(w, e.op, lint_type, compare_references(w, e), w.constant_slot(0), wanted);
     if (left.type->kind == Kind::text) {

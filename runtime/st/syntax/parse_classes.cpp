@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
@@ -26,6 +28,16 @@ Pou& add_accessor(Parsing& p, const Pou& property, Accessor accessor) {
     return pou;
 }
 
+/// A property, too, may be called so: `Set := x;`, `Get.member := x;`.
+bool begins_accessor(const Parsing& p) {
+    using enum Word;
+    constexpr Word behind_variable[] = {
+        assign,       plus_assign, minus_assign,     times_assign,   divided_assign, set_assign,
+        reset_assign, dot,         reference_assign, attempt_assign, caret,          open_bracket};
+    return (p.says("get") || p.says("set")) &&
+           std::ranges::find(behind_variable, p.next().word) == std::end(behind_variable);
+}
+
 /// Accessor : ( 'GET' | 'SET' ) Access_Spec * ';' ? Var_Sections Stmt_List
 ///            ( 'END_GET' | 'END_SET' ) ';' ?
 /// Both are names elsewhere; a GET ends with END_GET.
@@ -37,7 +49,7 @@ Pou* parse_accessor(Parsing& p, const Pou& property) {
     while (accept_access(p, &pou.access)) continue;
     p.accept(Word::semicolon);
     parse_sections(p, pou, end);
-    const bool is_empty = p.is(Word::end_property_) || p.says("get") || p.says("set");
+    const bool is_empty = p.is(Word::end_property_) || begins_accessor(p);
     p.is_in_body = true;
     if (!is_empty) parse_statements(p, pou.body, end);
     p.is_in_body = false;
@@ -101,7 +113,7 @@ void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     if (of == PouKind::interface && p.is(Word::end_property_))
         for (const Accessor accessor : {Accessor::get, Accessor::set})
             to.push_back(&add_accessor(p, property, accessor));
-    while (!p.panic && p.is(Word::name) && (p.says("get") || p.says("set")))
+    while (!p.panic && p.is(Word::name) && begins_accessor(p))
         to.push_back(parse_accessor(p, property));
     close(p, Word::end_property_, opener);
     p.accept(Word::semicolon);
