@@ -120,6 +120,18 @@ const checks = {
     await client.stop();
   },
 
+  async "a fault is shown where it happened, with its calls and values"() {
+    const failing = path.join(source, "tests/debug/fault.yaml");
+    const { client, stop } = await begin({ program: failing }, (client) => client.setExceptionBreakpointsRequest({ filters: ["block_error"] }));
+    assert.equal(stop.reason, "exception");
+    const { stackFrames } = (await client.stackTraceRequest({ threadId: stop.threadId })).body;
+    assert.deepEqual(stackFrames.map((each) => [each.name, each.line]),
+      [["Taken", 8], ["Line (second)", 20], ["task main at 0.04 s", 1]]);
+    const value = async (frame, scope, name) => (await inside(client, (await scopes(client, stackFrames[frame].id))[scope]))[name].value;
+    assert.deepEqual([await value(0, "Inputs", "place"), await value(1, "Outputs", "n")], ["10", "5"]);
+    await client.stop();
+  },
+
   async "steps: over, into, out, to the next scan, back and on"() {
     const { client } = await begin({}, (client) => client.setBreakpointsRequest({ source: { path: motor }, breakpoints: [{ line: calling }] }));
     await client.setBreakpointsRequest({ source: { path: motor }, breakpoints: [] });

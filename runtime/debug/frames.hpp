@@ -20,6 +20,21 @@ struct Frame {
     const Machine* machine = nullptr;
 };
 
+/// A scan that a fault has ended, as if it stood where that happened.
+class FailedScan {
+  public:
+    FailedScan(Machine& machine, const st::Library::Made& made, const BlockPlace& block, int task);
+    FailedScan(const FailedScan&) = delete;
+    FailedScan& operator=(const FailedScan&) = delete;
+
+    const st::Halt& halt() const { return halt_; }
+
+  private:
+    Scan now_;
+    Context context_;
+    st::Halt halt_;
+};
+
 /// Those that run, the innermost first.
 std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made,
                              const Machine& machine);

@@ -79,7 +79,9 @@ bool Session::play(Executive& executive) {
     while (!jump_ && !ending_) {
         if (between_) {
             here_ = {instant_};
+            if (between_->reason == "exception") find_failed(between_->task);
             stand(*std::exchange(between_, {}), nullptr);
+            failed_.reset();
             post_due();
         } else if (!goes_on || executive.time() >= end_of_run()) {
             here_ = {instant_};
@@ -268,9 +270,20 @@ void Session::happened(const RunEvent& event) {
     executive_->hold();
 }
 
+/// The first block of the task that a fault in its Structured Text ended.
+void Session::find_failed(int task) {
+    for (std::size_t i = 0; i < machine_.blocks.size() && !failed_; ++i) {
+        const BlockPlace& block = machine_.blocks[i];
+        const bool is_text = made_ && st::made_of(*block.type) == made_ && !block.type->single;
+        if (is_text && loaded_.linked.net.instances[i].task == task &&
+            read<std::uint64_t>(block.live + 8 * std::size_t{st::error_slot}) != 0)
+            failed_.emplace(machine_, *made_, block, task);
+    }
+}
+
 void Session::stand(Stop stop, const st::Halt* halt) {
     plan_.reset();
-    halt_ = halt;
+    halt_ = failed_ ? &failed_->halt() : halt;
     command_ = {};
     front_.stopped(stop);
     halt_ = nullptr;

@@ -114,7 +114,7 @@ class Session final : Observer, EventSink {
     bool stop_on_error = false;
     const Loaded& loaded() const { return loaded_; }
     const st::Library::Made* made() const { return made_; }
-    /// The scan under way; null between two instants.
+    /// The scan under way, or the one that a fault ended; null between two instants.
     const st::Halt* halt() const { return halt_; }
     const Position& here() const { return here_; }
     std::int64_t time() const { return executive_ ? executive_->time() : -1; }
@@ -157,6 +157,7 @@ class Session final : Observer, EventSink {
     void begin(Executive& executive);
     bool run_freely(std::int64_t limit, bool is_quiet);
     void stand(Stop stop, const st::Halt* halt);
+    void find_failed(int task);
     void obey(const st::Halt* halt);
     void post_due();
     void apply(const HandChange& made);
@@ -198,6 +199,7 @@ class Session final : Observer, EventSink {
 
     Executive* executive_ = nullptr;
     const st::Halt* halt_ = nullptr;
+    std::optional<FailedScan> failed_;  ///< that the run stands still for
     Position here_;
     std::int64_t instant_ = -1;  ///< that is under way, or was last [ns]
     std::uint64_t scans_ = 0, statements_ = 0;

@@ -422,13 +422,6 @@ std::string_view standard_name(const Type& type, std::string_view name) {
     return find_member(type, other) ? other : name;
 }
 
-/// Siemens' IEC_TIMER is what it is called as; all timers have one layout.
-const Type* timer_of(Checking& c, const Type& type, const Token& called) {
-    const bool is_any = same_name(type.name, "IEC_TIMER") || same_name(type.name, "IEC_LTIMER");
-    const bool is_timer = same_name(called.text, "TOF") || same_name(called.text, "TP");
-    return is_any && is_timer ? standard_type(c, called.text) : nullptr;
-}
-
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
     if (Expression* assertion = c.has_tests ? assertion_call(c, *e) : nullptr) {
         e = assertion;
@@ -442,12 +435,14 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         const Type* of = check(c, e->operands[0]->operands[0]);
         if (!of) return nullptr;
         if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
+            note_timer(c, *callee.operands[0], *of->standard);
             e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
             return check_instance_call(c, e, *of, as_statement);
         }
         if (const Type* timer = timer_of(c, *of, callee.token)) {
             e = make_call(c, *e, callee.operands[0], e->arguments);  // `#any.TOF(...)`
             e->called_as = timer->standard;
+            note_timer(c, *e->operands[0], *timer->standard);
             return check_instance_call(c, e, *of, as_statement);
         }
         if (Routine* part = find_part(c, *of, callee.token.text); part && as_statement) {

@@ -25,6 +25,14 @@ Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Ro
 /// does.
 bool means_standard(const Expression& call, const Routine& method);
 
+// timers.cpp
+
+/// Siemens' IEC_TIMER is what it is called as; all timers have one layout. Null: it is no TOF or
+/// TP.
+const Type* timer_of(Checking& c, const Type& type, const Token& called);
+/// Notes what a call makes a timer.
+void note_timer(Checking& c, const Expression& timer, const BlockType& called);
+
 // standard_calls.cpp
 
 /// Tells when there are too few arguments, or too many.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <unordered_map>
 
 #include "runtime/model/library_reference.hpp"
 #include "runtime/st/code/machine.hpp"
@@ -21,7 +22,12 @@ struct Checked {
     bool dispatches = false;         ///< calls find routines by instances
     Image image = {};                ///< the process image
     std::unordered_set<const Source*> foreign_users;  ///< that have names of libraries not here
+    /// Variables of IEC_TIMER, and what calls make them; null: not always the same.
+    std::unordered_map<const Variable*, const BlockType*> called_as = {};
 };
+
+/// What an instance, or the array that it is an element of, is declared as.
+const Variable* variable_of_instance(const Expression& instance);
 
 struct NameUse;
 

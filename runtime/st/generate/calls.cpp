@@ -343,6 +343,34 @@ Location call_routine(Writing& w, const Expression& e) {
     return frame;
 }
 
+/// What an instance of Siemens' timers is called as; null: it is none, or that is not known.
+const BlockType* timer_at(const Writing& w, const Expression& instance) {
+    const Type* type = instance.type;
+    if (!type || type->kind != Kind::standard) return nullptr;
+    constexpr std::string_view timers[] = {"ton", "tof", "tp"};
+    if (std::ranges::find(timers, type->standard->name) == std::end(timers)) return nullptr;
+    if (!type->name.starts_with("IEC_")) return type->standard;
+    const auto found = w.checked.called_as.find(variable_of_instance(instance));
+    return found == w.checked.called_as.end() ? nullptr : found->second;
+}
+
+void update_timer(Writing& w, const Expression& read) {
+    const bool is_of_siemens = read.place.dialect().vendor == Vendor::siemens;
+    if (!is_of_siemens || !(same_name(read.token.text, "q") || same_name(read.token.text, "et")))
+        return;
+    const Expression& instance = *read.operands[0];
+    const BlockType* timer = timer_at(w, instance);
+    if (!timer) return;
+    const Location frame = on_frame(w, locate(w, instance));
+    Jumps mocked;
+    if (w.has_tests) {
+        const Slot calls = load(w, behind(frame, instance.type->slots - 1));
+        w.jump(Op::jump_if, 0, w.emit(Op::lt_signed, none, calls, w.constant_slot(0)), mocked);
+    }
+    put_call(w, Op::call_block, Op::call_block_at, frame, w.standard_number(*timer));
+    w.land(mocked);
+}
+
 void call_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;

@@ -219,8 +219,10 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
         case E::index:
             if (e.is_character()) return character(w, e, wanted);
             [[fallthrough]];
-        case E::name:
         case E::member:
+            update_timer(w, e);
+            [[fallthrough]];
+        case E::name:
         case E::deref:
             return load(w, locate(w, e), wanted);
         case E::bit:

@@ -9,6 +9,9 @@ namespace lineshaft::st {
 Slot value(Writing& w, const Expression& e, Slot wanted = none);
 void value_to(Writing& w, const Expression& e, Slot to);
 
+/// Siemens' timers go on where Q or ET is read, too.
+void update_timer(Writing& w, const Expression& read);
+
 /// Whether a whole number is beyond what its type holds, as CODESYS' dialect reckons.
 bool is_wide(const Writing& w, const Expression& e);
 /// A value as it is reckoned: in 64 bits, of what is not kept in its type before.
