@@ -158,6 +158,7 @@ void Axis::wake_up(std::int64_t now) {
     offset = lasting = added_goal = 0;
     withdrawn = added_paused = added_counted = 0;
     powered = enables_positive = enables_negative = 1;
+    switched = 0;
     hold({.position = place}, {now});
     goal = origin = place;
     error = false;

@@ -132,11 +132,12 @@ struct Axis {
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
     double goal = 0;                 ///< of `active`, as a position beneath; where it ended
     double origin = 0;               ///< from where the distance of `active` counts, likewise
-    double lasting = 0;        ///< velocity that the motion goes on with, but for the override
-    Factors factors;           ///< of MC_SetOverride
-    std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
-    std::int64_t powered = 1;  ///< what MC_Power wants
-    Shortage shortage;         ///< of the last sync_limits
+    double lasting = 0;         ///< velocity that the motion goes on with, but for the override
+    Factors factors;            ///< of MC_SetOverride
+    std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1;   ///< what MC_Power wants
+    std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
+    Shortage shortage;          ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
@@ -162,6 +163,10 @@ struct Axis {
     /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
     /// command writes the request and, at each start, the next ticket.
     void send(const Context& context, const Scan& now, Job& job);
+
+    /// Of MC_Power, not Enable, in its first scan: an axis that nothing has switched yet has no
+    /// power from the start, for all that look at it later in this scan of its task.
+    void begin_without_power(const Context& context);
 
     Dynamics defaults() const;
     /// Of a request: with the defaults where it is below 0, as it says.

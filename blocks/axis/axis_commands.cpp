@@ -128,6 +128,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
 void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {
     const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
+    switched = 1;
     enables_positive = request.enables_positive;
     enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
@@ -138,6 +139,11 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
     } else if (doing == Doing::holding) {
         come_to_rest(context);
     }
+}
+
+void Axis::begin_without_power(const Context& context) {
+    if (switched != 0 || started == 0 || task != context.task) return;
+    if (state == AxisState::standstill) state = AxisState::disabled;
 }
 
 /// Whether MC_Power enables the direction of a way, or of a velocity.
