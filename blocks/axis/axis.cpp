@@ -91,6 +91,7 @@ std::span<const Field> Axis::fields() {
         output("error", &A::error, "", "the axis has stopped; MC_Reset ends it"),
         output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
+        local("turns", &A::turns, "", "of a modulo axis: whole periods that `position` leaves out"),
         local("homed", &A::homed, "", "by MC_Home"),
         of_active(local("jogs", &A::Running::request, &Request::jogs, "",
                         "1: what moves it is MC_MoveJog")),
@@ -315,6 +316,7 @@ void Axis::publish() {
         return;
     }
     position = modulo ? within_period(now.position, period) : now.position;
+    if (modulo) turns = std::round((now.position - position) / period);
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

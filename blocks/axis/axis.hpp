@@ -109,6 +109,7 @@ struct Axis {
     AxisUnit unit = AxisUnit::mm;
     AxisProfile profile = AxisProfile::plcopen;
     double period = 0, lowest_position = 0, highest_position = 0;
+    double turns = 0;  ///< of a modulo axis: whole periods that `position` leaves out
     double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
            default_jerk = 5e4;
     double start_position = 0;
@@ -374,9 +375,11 @@ struct Axis {
     MotionError plan_homing(const Request& request, const Moment& at, Start& from);
     bool stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const;
     void replan(const Context& context, const Moment& at);
+
+    // axis_targets.cpp: where a command leads.
     double target_of(const Request& request, const Start& from) const;
-    double modulo_target(const Request& request, const Start& from) const;
-    double nearest_to(double place, double shown_there) const;
+    double modulo_target(const Request& request, const Start& from, double turn) const;
+    static double nearest_to(double place, double shown_there, double turn);
 
     // axis_set_points.cpp: the program says in each scan where the axis is.
     MotionState set_point_of(const Request& request, double here) const;
@@ -439,9 +442,12 @@ bool is_taken_in_group(Command command);
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);
 
+/// Whether it asks for turns on the shortest way to a position, which has none.
+bool adds_turns_to_shortest(const Request& request);
+
 MotionError motion_error_of(PlanResult result);
 
-/// From 0 up to `period`.
+/// From 0 up to `period`; the position itself without a period.
 double within_period(double position, double period);
 
 }  // namespace lineshaft
