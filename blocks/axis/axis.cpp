@@ -91,6 +91,7 @@ std::span<const Field> Axis::fields() {
         output("error", &A::error, "", "the axis has stopped; MC_Reset ends it"),
         output("error_id", &A::error_id, "", "why").one_of(motion_error_names),
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
+        local("turns", &A::turns, "", "of a modulo axis: whole periods that `position` leaves out"),
         local("homed", &A::homed, "", "by MC_Home"),
         of_active(local("jogs", &A::Running::request, &Request::jogs, "",
                         "1: what moves it is MC_MoveJog")),
@@ -158,6 +159,7 @@ void Axis::wake_up(std::int64_t now) {
     offset = lasting = added_goal = 0;
     withdrawn = added_paused = added_counted = 0;
     powered = enables_positive = enables_negative = 1;
+    switched = 0;
     hold({.position = place}, {now});
     goal = origin = place;
     error = false;
@@ -314,6 +316,7 @@ void Axis::publish() {
         return;
     }
     position = modulo ? within_period(now.position, period) : now.position;
+    if (modulo) turns = std::round((now.position - position) / period);
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

@@ -109,6 +109,7 @@ struct Axis {
     AxisUnit unit = AxisUnit::mm;
     AxisProfile profile = AxisProfile::plcopen;
     double period = 0, lowest_position = 0, highest_position = 0;
+    double turns = 0;  ///< of a modulo axis: whole periods that `position` leaves out
     double default_velocity = 100, default_acceleration = 1000, default_deceleration = 1000,
            default_jerk = 5e4;
     double start_position = 0;
@@ -132,11 +133,12 @@ struct Axis {
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
     double goal = 0;                 ///< of `active`, as a position beneath; where it ended
     double origin = 0;               ///< from where the distance of `active` counts, likewise
-    double lasting = 0;        ///< velocity that the motion goes on with, but for the override
-    Factors factors;           ///< of MC_SetOverride
-    std::int64_t paused = 0;   ///< on the way to `goal`, by an override of 0
-    std::int64_t powered = 1;  ///< what MC_Power wants
-    Shortage shortage;         ///< of the last sync_limits
+    double lasting = 0;         ///< velocity that the motion goes on with, but for the override
+    Factors factors;            ///< of MC_SetOverride
+    std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1;   ///< what MC_Power wants
+    std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
+    Shortage shortage;          ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
@@ -162,6 +164,10 @@ struct Axis {
     /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
     /// command writes the request and, at each start, the next ticket.
     void send(const Context& context, const Scan& now, Job& job);
+
+    /// Of MC_Power, not Enable, in its first scan: an axis that nothing has switched yet has no
+    /// power from the start, for all that look at it later in this scan of its task.
+    void begin_without_power(const Context& context);
 
     Dynamics defaults() const;
     /// Of a request: with the defaults where it is below 0, as it says.
@@ -369,9 +375,11 @@ struct Axis {
     MotionError plan_homing(const Request& request, const Moment& at, Start& from);
     bool stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const;
     void replan(const Context& context, const Moment& at);
+
+    // axis_targets.cpp: where a command leads.
     double target_of(const Request& request, const Start& from) const;
-    double modulo_target(const Request& request, const Start& from) const;
-    double nearest_to(double place, double shown_there) const;
+    double modulo_target(const Request& request, const Start& from, double turn) const;
+    static double nearest_to(double place, double shown_there, double turn);
 
     // axis_set_points.cpp: the program says in each scan where the axis is.
     MotionState set_point_of(const Request& request, double here) const;
@@ -434,9 +442,12 @@ bool is_taken_in_group(Command command);
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);
 
+/// Whether it asks for turns on the shortest way to a position, which has none.
+bool adds_turns_to_shortest(const Request& request);
+
 MotionError motion_error_of(PlanResult result);
 
-/// From 0 up to `period`.
+/// From 0 up to `period`; the position itself without a period.
 double within_period(double position, double period);
 
 }  // namespace lineshaft

@@ -128,6 +128,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
 void Axis::switch_power(const Context& context, const Moment& at, const Request& request) {
     const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
+    switched = 1;
     enables_positive = request.enables_positive;
     enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
@@ -138,6 +139,11 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
     } else if (doing == Doing::holding) {
         come_to_rest(context);
     }
+}
+
+void Axis::begin_without_power(const Context& context) {
+    if (switched != 0 || started == 0 || task != context.task) return;
+    if (state == AxisState::standstill) state = AxisState::disabled;
 }
 
 /// Whether MC_Power enables the direction of a way, or of a velocity.
@@ -410,6 +416,7 @@ MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const 
 MotionError Axis::plan_point(const Request& request, double to, const Moment& at,
                              const Start& from) {
     if (!asked_of(request).valid()) return MotionError::limit_not_positive;
+    if (adds_turns_to_shortest(request)) return MotionError::out_of_range;
     if (!may_aim_at(to, from)) return MotionError::software_limit;
     const double direction = sign_of(to - from.state.position);
     const double end_velocity =
@@ -441,31 +448,6 @@ MotionError Axis::go_to(double to, double end_velocity, const Dynamics& d, const
     lasting = end_velocity;
     goal = to;
     return why;
-}
-
-double Axis::target_of(const Request& request, const Start& from) const {
-    if (!is_absolute(request.command)) return from.origin + request.position;
-    return modulo ? modulo_target(request, from) : request.position;
-}
-
-/// Of the places that show the position one that the axis can reach without turning round.
-double Axis::modulo_target(const Request& request, const Start& from) const {
-    constexpr double tolerance = 1e-9;
-    const double stop = stopping_position(from.state, dynamics_of(request));
-    const double turns = (stop - request.position) / period;
-    MoveDirection direction = request.direction;
-    if (direction == MoveDirection::current)
-        direction = from.state.velocity < 0 ? MoveDirection::negative : MoveDirection::positive;
-    if (direction == MoveDirection::positive)
-        return request.position + period * std::ceil(turns - tolerance);
-    if (direction == MoveDirection::negative)
-        return request.position + period * std::floor(turns + tolerance);
-    return nearest_to(stop, request.position);
-}
-
-/// Of the places that show a position of a modulo axis the one next to a place.
-double Axis::nearest_to(double place, double shown_there) const {
-    return shown_there + period * std::floor((place - shown_there) / period + 0.5);
 }
 
 /// The position is known at once, at the end of the move, or where the signal came: from there the

@@ -3,7 +3,7 @@
 namespace lineshaft {
 
 MotionState Axis::set_point_of(const Request& request, double here) const {
-    const double to = modulo ? nearest_to(here, request.position) : request.position;
+    const double to = modulo ? nearest_to(here, request.position, period) : request.position;
     return {to, request.velocity, request.acceleration};
 }
 

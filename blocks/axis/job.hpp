@@ -166,6 +166,7 @@ struct Request {
     BufferMode mode = BufferMode::aborting;
     MoveDirection direction = MoveDirection::shortest_way;
     double position = 0;      ///< target or distance [u]
+    double period = 0;        ///< of the target [u]; 0: the axis' own; below 0: none (TwinCAT)
     double velocity = -1;     ///< [u/s]
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;

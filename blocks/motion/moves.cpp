@@ -7,10 +7,13 @@ namespace lineshaft::command_kinds {
 using namespace pin;
 
 std::span<const Field> absolute_fields() {
-    static const auto fields =
-        table({continuous_update(), pin::position("target"), velocity(), acceleration(),
-               deceleration(), jerk(), direction(), buffer_mode()},
-              done("the target is reached"));
+    static const auto fields = table(
+        {continuous_update(), pin::position("target"), velocity(), acceleration(), deceleration(),
+         jerk(), direction(), buffer_mode(),
+         input("Period", &CommandBlock::pins, &Request::period, "{Axis}",
+               "whose whole turns in Position count, of any axis, as TwinCAT's; below 0: Position "
+               "counts over all turns; 0: of a modulo axis Position is a place in its period")},
+        done("the target is reached"));
     return fields;
 }
 

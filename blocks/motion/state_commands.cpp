@@ -17,7 +17,8 @@ std::span<const Field> Power::fields() {
 }
 
 void Power::scan(const Scan& now, const Context& context) {
-    const bool changed = !started || execute != last_execute ||
+    const bool first = !started;
+    const bool changed = first || execute != last_execute ||
                          enable_positive != (pins.enables_positive != 0) ||
                          enable_negative != (pins.enables_negative != 0);
     pins.enables_positive = enable_positive ? 1 : 0;
@@ -28,7 +29,13 @@ void Power::scan(const Scan& now, const Context& context) {
     error = refusal != MotionError::none;
     error_id = refusal;
     active = !error;
-    status = !error && context.seen_instance<Axis>(axis).state != AxisState::disabled;
+    if (error) {
+        status = false;
+        return;
+    }
+    if (first && !execute) context.instance<Axis>(axis).begin_without_power(context);
+    const Axis& seen = context.seen_instance<Axis>(axis);
+    status = seen.state != AxisState::disabled && (execute || seen.switched != 0);
 }
 
 std::span<const Field> Stop::fields() {

@@ -93,6 +93,18 @@ TEST_CASE("each library compiles, and has no kind but of its variables", "[st][l
     }
 }
 
+TEST_CASE("a name of a library brings along all that its file needs", "[st][libraries]") {
+    for (const LibraryFile& library : standard_blocks().libraries()) {
+        const auto names = st::LibraryNames::declared_in(library);  // each takes the same files
+        if (names.empty()) continue;
+        const std::string name = std::string(library.library) + "." + std::string(names.front());
+        INFO(library.path);
+        const std::string said =
+            compiled({file("a.st", "PROGRAM p VAR v : " + name + "; END_VAR END_PROGRAM\n")});
+        CHECK(said.find("blocks/libraries") == std::string::npos);
+    }
+}
+
 TEST_CASE("a program takes of libraries what nobody else has", "[st][libraries]") {
     const std::string use = "PROGRAM p VAR b : BLINK; END_VAR b(ENABLE := TRUE); END_PROGRAM\n";
     CHECK(compiled({file("a.st", use)}) == "p ");
