@@ -32,6 +32,7 @@ def test(*arguments, code=0):
     return re.sub(r" \(\d+\.\d\d s\)", "", answer.stdout).splitlines(), answer.stderr
 
 
+assert "'nothere': it does not exist" in test("nothere", code=2)[1]
 for i in range(20):
     program(f"a{i:02}.yaml", "n.cv: 1")
 program("b.yaml", "n.cv: 2", "n.q: true", "n.cv: 1")
@@ -171,6 +172,12 @@ assert said.returncode == 0 and "--full" in said.stdout and said.stderr == "", s
 found = [line.split()[0] for line in run("blocks", "Gear", code=0).splitlines()]
 assert {"MC_GearIn", "MC_GearOut", "MC_GearInPos"} <= set(found) and len(found) < 10, found
 assert [line.split()[0] for line in run("blocks", "gear", "leaves", code=0).splitlines()] == ["MC_GearOut"]
+for name in ("mc_movemodulo", "Tc2_MC2.MC_MoveModulo"):
+    said = run("blocks", name, code=0)
+    assert said.startswith("of the library Tc2_MC2:\n// Moves") and "Direction : MC_Direction" in said and "ErrorID" in said, said
+    assert "command" not in said, said
+assert "Tc2_MC2" in run("blocks", "Tc2_MC2.MC_MoveAbsolute", code=0)
+assert "Tc2_MC2" not in run("blocks", "MC_MoveAbsolute", code=0)
 
 # A comment in Latin-1 is text as another.
 (folder / "latin.st").write_bytes("FUNCTION_BLOCK p\nVAR_INPUT x : INT; (* õä *) END_VAR\nEND_FUNCTION_BLOCK\n".encode("iso-8859-1"))

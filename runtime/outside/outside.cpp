@@ -92,7 +92,7 @@ std::optional<Target> find_settable(const Connecting& to, const Node& node) {
                                  : direction == Direction::output ? "an output"
                                                                   : "a local"),
                      field ? "a stimulus sets inputs"
-                           : "a stimulus sets inputs; a force takes outputs, too");
+                           : "a stimulus sets inputs; a force takes outputs and locals, too");
         return {};
     }
     const Port port = to.net.port(target->signal.port.instance, *field);
@@ -126,7 +126,7 @@ std::optional<Target> find_forceable(const Connecting& to, const Node& signal) {
     if (!target || target->field.direction != Direction::parameter) return target;
     to.read.fail(code::port_cannot_be_set, signal,
                  fmt::format("'{}' is a parameter and cannot be forced", target->signal.name),
-                 "a force takes inputs and outputs");
+                 "a force takes inputs, outputs and locals");
     return {};
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include <fmt/core.h>
@@ -52,10 +53,52 @@ Types found(const Catalog& catalog, const std::vector<std::string>& words) {
     return types.empty() ? with(true) : types;
 }
 
+/// How a block or a function of a library is called: what stands before it, its name and its pins.
+std::string_view head_of(std::string_view text, const std::string& name) {
+    const std::string all = lower(text), wanted = lower(name);
+    for (const char* head : {"\nfunction_block {}\n", "\nfunction_block {} ", "\nfunction {} "}) {
+        const std::string sought = fmt::format(fmt::runtime(head), wanted);
+        const std::size_t found = all.find(sought);
+        if (found == all.npos) continue;
+        std::size_t end = found + sought.size() - 1;
+        const bool is_helper =
+            std::islower(static_cast<unsigned char>(text[end - wanted.size()])) != 0;
+        if (is_helper) continue;
+        std::size_t begin = found + 1;
+        while (begin > 1) {
+            const std::size_t above = all.rfind('\n', begin - 2) + 1;
+            if (all.compare(above, 2, "//") != 0) break;
+            begin = above;
+        }
+        end = all.find('\n', end) + 1;
+        while (all.compare(end, 6, "var_in") == 0 || all.compare(end, 7, "var_out") == 0)
+            end = all.find('\n', all.find("end_var", end)) + 1;
+        return text.substr(begin, end - begin);
+    }
+    return {};
+}
+
+/// Of each library that has it, alone or as `Tc2_MC2.MC_MoveModulo`; false: none has.
+bool describe_of_libraries(const Catalog& catalog, const std::string& name) {
+    bool any = false;
+    for (const LibraryFile& file : catalog.libraries()) {
+        const std::string of_library = lower(file.library) + ".";
+        const bool is_full = lower(name).starts_with(of_library);
+        const std::string_view head =
+            head_of(file.text, is_full ? name.substr(of_library.size()) : name);
+        if (head.empty()) continue;
+        fmt::print("{}of the library {}:\n{}", any ? "\n" : "", file.library, head);
+        any = true;
+    }
+    return any;
+}
+
 /// The type of that name, or all that have to do with the words.
 Exit describe(const Catalog& catalog, const std::vector<std::string>& words, bool json) {
     const BlockType* type = words.size() == 1 ? catalog.find(words.front()) : nullptr;
     if (!type) {
+        if (words.size() == 1 && !json && describe_of_libraries(catalog, words.front()))
+            return Exit::fine;
         const Types types = found(catalog, words);
         const std::string_view instead =
             catalog.instead_of(fmt::format("{}", fmt::join(words, " ")));
@@ -75,6 +118,13 @@ Exit describe(const Catalog& catalog, const std::vector<std::string>& words, boo
     return Exit::fine;
 }
 
+/// As `Tc2_MC2.MC_MoveModulo`.
+bool is_of_library(const std::string& name) {
+    return std::ranges::any_of(standard_blocks().libraries(), [&](const LibraryFile& file) {
+        return lower(name).starts_with(lower(file.library) + ".");
+    });
+}
+
 /// The kinds of block of the files; empty, and reported, when there is a mistake in them.
 std::optional<Catalog> compiled(const std::vector<std::string>& files, bool json) {
     Diagnostics out;
@@ -91,8 +141,9 @@ Exit execute(const BlocksCommand& command) {
     std::vector<std::string> files, types;
     for (const std::string& name : command.names) {
         std::error_code error;
-        const bool is_file = std::filesystem::path(name).has_extension() ||
-                             std::filesystem::is_directory(name, error);
+        const bool is_file =
+            (std::filesystem::path(name).has_extension() && !is_of_library(name)) ||
+            std::filesystem::is_directory(name, error);
         (is_file ? files : types).push_back(name);
     }
     const auto catalog = files.empty() ? standard_blocks() : compiled(files, command.json);

@@ -192,6 +192,15 @@ bool check_files(const TestCommand& command, const std::vector<std::string>& inp
     return out.empty();
 }
 
+/// False, and reported, when one is not there.
+bool are_there(const std::vector<std::string>& paths) {
+    std::error_code error;
+    const auto is_missing = [&](const auto& path) { return !std::filesystem::exists(path, error); };
+    for (const std::string& path : paths)
+        if (is_missing(path)) spdlog::error("cannot read '{}': it does not exist", path);
+    return std::ranges::none_of(paths, is_missing);
+}
+
 Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failures.empty(); });
@@ -216,7 +225,7 @@ Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) 
 }
 
 Exit execute(TestCommand& command) {
-    if (!prepare(command)) return Exit::wrong;
+    if (!prepare(command) || !are_there(command.paths)) return Exit::wrong;
     if (!command.coverage.empty()) st::start_coverage();
     std::vector<TestFile> files;
     for (const std::string& path : command.paths)
