@@ -38,9 +38,25 @@ const Type* unknown_name(Checking& c, const Expression& e) {
     return undeclared(c, e.token, e.place);
 }
 
+/// What has the variable of VAR_STAT whose initial value is being checked; null: none is.
+const Routine* routine_of_static(const Checking& c) {
+    const Variable* begun = c.beginning.variable;
+    if (c.routine || !c.statics || !begun || begun->space != Space::global) return nullptr;
+    if (c.checked.globals[static_cast<std::size_t>(begun->global)].type != c.statics)
+        return nullptr;
+    for (const Routine& routine : c.checked.routines)
+        if (find_in(routine.names, begun->name.text) == begun) return &routine;
+    return nullptr;
+}
+
 Variable* find_own(const Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
         if (Variable* variable = find_in(r->names, token.text)) return variable;
+    for (const Routine* r = routine_of_static(c); r && !token.quoted; r = r->owner) {
+        Variable* variable = find_in(r->names, token.text);
+        if (variable && variable != c.beginning.variable && variable->space == Space::global)
+            return variable;
+    }
     return nullptr;
 }
 
