@@ -244,6 +244,16 @@ const Type* refuse_alone(Checking& c, const Expression& e, const Type& enumerati
                               enumeration.name, e.token.text));
 }
 
+/// Whether a variable is meant where a value of an enumeration of that name is due. In TwinCAT that
+/// is not the BOOL of METHOD Execute in `state := EXECUTE`, which is no value.
+bool is_variable_for(Checking& c, const Token& token) {
+    const Variable* variable = find_variable(c, token);
+    if (!variable) return false;
+    const bool is_truth = variable->section == Section::result && variable->type &&
+                          variable->type->kind == Kind::boolean;
+    return !is_truth || !token.place.source || !token.place.dialect().is_loose;
+}
+
 }  // namespace
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -252,7 +262,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const bool is_text = token.quoted && e->place.dialect().is_loose;
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
-        if (value && !find_variable(c, token))
+        if (value && !is_variable_for(c, token))
             return expected->is_qualified_only && e->place.dialect().is_loose
                        ? refuse_alone(c, *e, *expected)
                        : become_value(c, e, *expected, value - expected->values.data());
