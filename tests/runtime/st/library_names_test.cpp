@@ -148,6 +148,6 @@ TEST_CASE("names that nobody has may be of libraries that are not here", "[st][l
     Diagnostics apart;
     options.references = {{"Tc2_Standard", {project, 1, 1}}, {"Tc3_Module", {project, 2, 1}}};
     CHECK_FALSE(st::compile({source}, standard_blocks(), apart, options));
-    CHECK(apart.render().find("a.st:2:24: error[L0904]") != std::string::npos);
+    CHECK(apart.render().find("a.st:1:19: error[L0904]") != std::string::npos);
     CHECK(apart.render().find("L0927") == std::string::npos);
 }
