@@ -192,6 +192,13 @@ def blocks_examples_hold(lineshaft):
     return holds
 
 
+def faults():
+    """The names that messages have of them, but of none."""
+    source = pathlib.Path(__file__).parent.parent / "runtime/st/code/fault.hpp"
+    names = source.read_text(encoding="utf-8").partition("fault_names[]")[2]
+    return re.findall(r'"(\w+)"', names)[1:]
+
+
 def main():
     lineshaft = pathlib.Path(sys.argv[1]).resolve()
     count = failed = 0
@@ -206,6 +213,8 @@ def main():
                 failed += 1
                 print(f"{code}: exit code {answer.returncode}", example, answer.stdout, answer.stderr, sep="\n")
     print(f"{count} examples, {failed} failed")
+    if any(not explain(lineshaft, fault).startswith(fault + "\n  ") for fault in faults()):
+        return 1
     if not blocks_examples_hold(lineshaft):
         return 1
     return 1 if failed or count < 20 else 0

@@ -22,6 +22,16 @@ constexpr Topic topics[] = {
 #include "tools/lineshaft/topics.inc"
 };
 
+/// Of the topic that tells of faults the paragraph under that name; empty: there is none.
+std::string_view fault_text(std::string_view name) {
+    const auto faults = std::ranges::find(topics, "faults", &Topic::name);
+    const std::size_t at = faults->text.find(fmt::format("\n\n{}\n  ", name));
+    if (at == std::string_view::npos) return {};
+    const std::string_view from = faults->text.substr(at + 2);
+    const std::string_view text = from.substr(0, from.find("\n\n"));
+    return text.substr(0, text.find_last_not_of('\n') + 1);
+}
+
 void print_list() {
     for (const CodeText& text : diagnostic_codes()) fmt::print("{}  {}\n", text.code, text.title);
     fmt::print("\n");
@@ -36,7 +46,8 @@ void add_explain(CLI::App& app, Exit& result) {
         "explain",
         "Print the paragraph behind a message's code, or what there is to know of a topic");
     sub->add_option("what", *what,
-                    "A code such as L0203, or a topic such as tests; all of them without it");
+                    "A code such as L0203, a topic such as tests, or a fault such as no_end; codes "
+                    "and topics without it");
     sub->callback([what, &result] {
         if (what->empty()) return print_list();
         if (const CodeText* text = find_code(*what)) {
@@ -46,6 +57,10 @@ void add_explain(CLI::App& app, Exit& result) {
         if (const auto topic = std::ranges::find(topics, *what, &Topic::name);
             topic != std::end(topics)) {
             fmt::print("{}: {}", topic->name, topic->text);
+            return;
+        }
+        if (const std::string_view text = fault_text(*what); !text.empty()) {
+            fmt::print("{}\n", text);
             return;
         }
         spdlog::error("there is no code and no topic '{}'; 'lineshaft explain' lists them", *what);

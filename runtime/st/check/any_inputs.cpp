@@ -22,6 +22,7 @@ std::string_view class_of(const Type& type) {
     if (type.kind == Kind::real) return type.bits == 32 ? "REAL" : "LREAL";
     if (type.kind == Kind::integer) return integer_type(type.bits, type.is_signed).name;
     if (type.kind == Kind::bits) return bits_type(type.bits).name;
+    if (type.is_wide) return "WSTRING";
     const auto* row = std::ranges::find(classes_of_kinds, type.kind, &TypeClass::kind);
     if (row != std::end(classes_of_kinds)) return row->name;
     return type.is_any() ? "NONE" : "USERDEF";

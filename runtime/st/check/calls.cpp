@@ -119,6 +119,14 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                   help_with_argument(c, argument.name.text, routine, names));
 }
 
+/// What a slot has of a variable of CODESYS' is what it has of that number: a subrange's value, and
+/// an enumeration's where its values are counted from 0 on.
+bool is_kept_as(const Type& given, const Type& number) {
+    if (given.is_unchecked) return same_type(*given.base, number);
+    return given.kind == Kind::enumeration && given.has_numbers && given.counted &&
+           !given.is_strict && same_type(given.base->plain(), number);
+}
+
 /// A variable of type `given` stands for an output or a VAR_IN_OUT.
 void check_given(Checking& c, const Argument& argument, const Variable& parameter,
                  const Type& given) {
@@ -134,8 +142,10 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                          type->kind == Kind::block && is_a(*given.routine, *type->routine);
     const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
                           type->is_integer() && given.is_integer();  // of a date: any integer
+    const bool is_number =
+        value->place.dialect().enumerations_are_numbers && is_kept_as(given, *type);
     const bool fits =
-        same_type(given, *type) || derives ||
+        same_type(given, *type) || derives || is_number ||
         (parameter.section == Section::in_out
              ? texts && type->is_open
              : texts || is_split ||

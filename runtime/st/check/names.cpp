@@ -38,9 +38,25 @@ const Type* unknown_name(Checking& c, const Expression& e) {
     return undeclared(c, e.token, e.place);
 }
 
+/// What has the variable of VAR_STAT whose initial value is being checked; null: none is.
+const Routine* routine_of_static(const Checking& c) {
+    const Variable* begun = c.beginning.variable;
+    if (c.routine || !c.statics || !begun || begun->space != Space::global) return nullptr;
+    if (c.checked.globals[static_cast<std::size_t>(begun->global)].type != c.statics)
+        return nullptr;
+    for (const Routine& routine : c.checked.routines)
+        if (find_in(routine.names, begun->name.text) == begun) return &routine;
+    return nullptr;
+}
+
 Variable* find_own(const Checking& c, const Token& token) {
     for (const Routine* r = c.routine; r && !token.quoted; r = r->owner)
         if (Variable* variable = find_in(r->names, token.text)) return variable;
+    for (const Routine* r = routine_of_static(c); r && !token.quoted; r = r->owner) {
+        Variable* variable = find_in(r->names, token.text);
+        if (variable && variable != c.beginning.variable && variable->space == Space::global)
+            return variable;
+    }
     return nullptr;
 }
 
@@ -228,6 +244,16 @@ const Type* refuse_alone(Checking& c, const Expression& e, const Type& enumerati
                               enumeration.name, e.token.text));
 }
 
+/// Whether a variable is meant where a value of an enumeration of that name is due. In TwinCAT that
+/// is not the BOOL of METHOD Execute in `state := EXECUTE`, which is no value.
+bool is_variable_for(Checking& c, const Token& token) {
+    const Variable* variable = find_variable(c, token);
+    if (!variable) return false;
+    const bool is_truth = variable->section == Section::result && variable->type &&
+                          variable->type->kind == Kind::boolean;
+    return !is_truth || !token.place.source || !token.place.dialect().is_loose;
+}
+
 }  // namespace
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -236,7 +262,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const bool is_text = token.quoted && e->place.dialect().is_loose;
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
-        if (value && !find_variable(c, token))
+        if (value && !is_variable_for(c, token))
             return expected->is_qualified_only && e->place.dialect().is_loose
                        ? refuse_alone(c, *e, *expected)
                        : become_value(c, e, *expected, value - expected->values.data());

@@ -21,7 +21,15 @@ void check_masks(Checking& c, Expression& e, const Type* expected) {
     }
 }
 
+/// Of CODESYS an enumeration's value is its number to what works on bits, too.
+void take_bits_of_enumeration(Checking& c, Expression*& operand) {
+    if (operand->place.dialect().enumerations_are_numbers && !operand->type->is_strict)
+        enumeration_becomes_number(c, operand);
+}
+
 const Type* check_logic(Checking& c, Expression*& e) {
+    for (Expression*& operand : e->operands)
+        if (operand) take_bits_of_enumeration(c, operand);
     const auto is_truth = [](const Expression* o) { return o->type->kind == Kind::boolean; };
     const bool of_truths = std::ranges::any_of(e->operands, is_truth);
     if (!of_truths) reinterpret(c, *e, Kind::integer);
@@ -222,6 +230,7 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];
     const Type* type = check(c, operand, expected);
     if (!type) return nullptr;
+    if (e->op == Word::not_) take_bits_of_enumeration(c, operand);
     reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
     if (e->op == Word::not_) take_width(c, operand, expected);
     type = operand->type;

@@ -191,9 +191,10 @@ const Type* check_bit(Checking& c, Expression*& e) {
     };
     static constexpr Part parts[] = {
         {'X', 1, "bits"}, {'B', 8, "bytes"}, {'W', 16, "words"}, {'D', 32, "double words"}};
-    const Type* type = check(c, e->operands[0]);
-    if (!type) return nullptr;
+    if (!check(c, e->operands[0])) return nullptr;
     if (const auto address = check_data_address(c, e)) return *address;
+    if (e->place.dialect().enumerations_are_numbers) enumeration_becomes_number(c, e->operands[0]);
+    const Type* type = e->operands[0]->type;
     std::string_view text = e->token.text;
     const Part* known = parts;
     if (e->token.word == Word::direct) {

@@ -186,7 +186,7 @@ Fault run_whole(Frames& frames) {
 [[gnu::always_inline]] inline Fault run_native(Frames& frames) {
     const Code& code = frames.code;
     const Fault fault =
-        code.native->scan_of(code, frames.scanned)(frames.root, frames, frames.fuel);
+        code.native->scan_of(code, frames.scanned)(frames.place(frames.base), frames, frames.fuel);
     return fault == Fault::none ? fault : run_caught<false, false>(frames, fault);
 }
 
@@ -216,10 +216,11 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
 }
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
-              const Context& context, std::int64_t fuel) {
+              const Context& context, std::int64_t fuel, std::uint64_t frame) {
     Frames frames(code, routine, now, context, fuel, instance,
                   instance + 8 * std::size_t{code.calls_slot()},
                   instance + 8 * std::size_t{routine.pile});
+    frames.base = frame;
     if (code.native && !code.probe) return run_native(frames);
     return run_otherwise(frames);
 }

@@ -109,12 +109,26 @@ Bench::Bench(const Compiled& made, const Options& options, std::byte* unit, cons
 }
 
 TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
+    return run_on(routine, instance, 0);
+}
+
+/// The part has no room for calls that recur, and its own slots are those of another scan.
+TestResult Bench::run_part(const CodeRoutine& routine, const Type& block, int global,
+                           std::size_t slot) {
+    auto& caller = callers_.try_emplace(&block, made_.generated.images.at(&block)).first->second;
+    const auto number =
+        global < 0 ? static_cast<std::uint64_t>(std::ranges::find(places_, unit_) - places_.begin())
+                   : static_cast<std::uint64_t>(global);
+    return run_on(routine, reinterpret_cast<std::byte*>(caller.data()), (number + 1) << 32 | slot);
+}
+
+TestResult Bench::run_on(const CodeRoutine& routine, std::byte* instance, std::uint64_t frame) {
     const Code& code = made_.generated.code;
     root_ = instance;
     for (std::uint64_t i = 0; i < made_.checked.globals.size() && !places_.empty(); ++i)
         std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
     code.witness = this;
-    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel);
+    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel, frame);
     code.witness = nullptr;
     if (fault == Fault::none) return {};
     if (fault == Fault::assertion) return std::move(ended_);

@@ -30,9 +30,13 @@ class Bench : Witness {
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
 
-    /// Executes a routine on an instance: the unit's, or one that it, or a data block, has. A fault
-    /// is a failure; so is an assertion that ended it.
+    /// Executes a routine on the unit's instance or that of a data block. A fault is a failure; so
+    /// is an assertion that ended it.
     TestResult run(const CodeRoutine& routine, std::byte* instance);
+    /// On an instance of that block that the unit (-1) or that data block has: an address in it
+    /// means the same to all.
+    TestResult run_part(const CodeRoutine& routine, const Type& block, int global,
+                        std::size_t slot);
     /// Of the task that runs the unit [ns]; 1 ms else.
     void set_cycle(std::int64_t cycle) { now_.interval = cycle; }
     /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.
@@ -46,6 +50,7 @@ class Bench : Witness {
   private:
     void add_types(const Type& unit, std::span<const KeptReference> kept);
     std::vector<std::size_t> lay_out(const Type& unit, std::span<const KeptReference> kept);
+    TestResult run_on(const CodeRoutine& routine, std::byte* instance, std::uint64_t frame);
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
     bool let_pass(std::int64_t time, std::int64_t interval) override;
     const std::byte* place(std::uint64_t address);
@@ -70,7 +75,8 @@ class Bench : Witness {
     std::vector<std::pair<const BlockType*, std::byte*>> objects_;
     Scan now_{0, 1'000'000, 0};
     Scan now_of_objects_{};
-    std::byte* root_ = nullptr;  ///< the instance that runs
+    std::unordered_map<const Type*, std::vector<std::uint64_t>> callers_;  ///< of parts that run
+    std::byte* root_ = nullptr;  ///< the instance that runs, or the caller of the part that does
     std::uint64_t frame_ = 0;    ///< address of the one with the last assertion that did not hold
     TestResult ended_;           ///< by the last one
 };

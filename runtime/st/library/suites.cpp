@@ -199,11 +199,8 @@ class Suites {
             if (watch_.at_work) watch_.at_work(suite.name);
             set("suite", static_cast<std::int64_t>(i) + 1);
             set("test", 0);
-            std::byte* instance =
-                (suite.global < 0 ? bench_.unit()
-                                  : bench_.global(static_cast<std::size_t>(suite.global))) +
-                8 * suite.slot;
-            TestResult result = bench_.run(code_of(*suite.block), instance);
+            TestResult result = bench_.run_part(code_of(*suite.block), *suite.block->type,
+                                                suite.global, suite.slot);
             if (result.failure.starts_with("the fault no_reference"))
                 result.failure += reference_without_block(*suite.block);
             if (!result.failure.empty()) note_fault(i, result);

@@ -103,9 +103,10 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     for (const TypeDeclaration& type : tree.types) declare(type.name);
     for (const Pou& pou : tree.pous)
         for (const auto& names : {pou.bases, pou.implemented})
-            for (const Token& name : names) entry.used.insert(lower(name.text));
+            for (const Token& name : names) entry.used_types.insert(lower(name.text));
     for (const TypeText& type : tree.type_texts) {
-        if (!type.name.text.empty()) entry.used.insert(lower(type.name.text));
+        for (const Token& name : {type.name, type.base})
+            if (!name.text.empty()) entry.used_types.insert(lower(name.text));
         if (type.kind != TypeText::Kind::enumeration || type.is_qualified_only) continue;
         for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
     }
@@ -167,12 +168,21 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
             if (space.empty() || is_of_project || user.spaces.contains(space))
                 add(it->second, entry);
         }
-        if (first == last && !user.own.contains(name) && entry.values.contains(name))
-            add(name, entry);
     }
     std::vector<const Entry*> entries;
     for (const auto& [full, entry] : found) entries.push_back(entry);
     return entries;
+}
+
+/// The nearest that has a value of that name; null: none has.
+const SourcePool::Entry* SourcePool::nearest_value(const std::string& name,
+                                                   const std::string& to) const {
+    const Entry* found = nullptr;
+    for (const Entry& entry : entries_)
+        if (entry.values.contains(name) &&
+            (!found || nearness(entry.file->path, to) > nearness(found->file->path, to)))
+            found = &entry;
+    return found;
 }
 
 std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
@@ -200,18 +210,34 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
     return files_of(chosen);
 }
 
-/// Whatever declares a name that one of the chosen uses, and none declares.
+/// Whatever declares a name that one of the chosen uses, and none declares. A value may be called
+/// as a type is, that of its own as well.
 void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to) const {
-    const auto is_declared = [&](const std::string& name) {
-        return std::ranges::any_of(chosen, [&](const Entry* e) {
-            return e->types.contains(name) || e->values.contains(name);
-        });
+    const auto has_type = [&](const std::string& name) {
+        return std::ranges::any_of(chosen, [&](const Entry* e) { return e->types.contains(name); });
     };
-    for (std::size_t i = 0; i < chosen.size(); ++i)
-        for (const std::string& name : chosen[i]->used)
-            if (!is_declared(name))
-                for (const Entry* found : nearest(name, *chosen[i], to))
-                    if (std::ranges::find(chosen, found) == chosen.end()) chosen.push_back(found);
+    const auto has_value = [&](const std::string& name) {
+        return std::ranges::any_of(chosen,
+                                   [&](const Entry* e) { return e->values.contains(name); });
+    };
+    const auto add = [&](const Entry* found) {
+        if (std::ranges::find(chosen, found) == chosen.end()) chosen.push_back(found);
+    };
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Entry& user = *chosen[i];
+        const auto add_types = [&](const std::string& name) {
+            if (!has_type(name)) std::ranges::for_each(nearest(name, user, to), add);
+        };
+        std::ranges::for_each(user.used_types, add_types);
+        for (const std::string& name : user.used) {
+            const Entry* value =
+                has_value(name) || user.own.contains(name) || user.types.contains(name)
+                    ? nullptr
+                    : nearest_value(name, to);
+            if (!has_value(name)) add_types(name);
+            if (value) add(value);
+        }
+    }
 }
 
 /// Of all but the first, which is who asks.

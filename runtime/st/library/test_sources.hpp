@@ -41,7 +41,8 @@ class SourcePool {
         std::set<std::string> spaces;  ///< namespaces whose names it may write without them
         std::set<std::string> values;  ///< declared globals and values of enumerations
         std::set<std::string> own;     ///< variables and members, which hide others' values
-        std::set<std::string> used;
+        std::set<std::string> used;    ///< other than as types
+        std::set<std::string> used_types;
     };
     static Entry entry_of(const std::shared_ptr<const SourceFile>& file);
     void follow(std::vector<const Entry*>& chosen, const std::string& to) const;
@@ -49,6 +50,7 @@ class SourcePool {
         const std::vector<const Entry*>& chosen);
     std::vector<const Entry*> nearest(const std::string& name, const Entry& user,
                                       const std::string& to) const;
+    const Entry* nearest_value(const std::string& name, const std::string& to) const;
 
     std::vector<Entry> entries_;
 };

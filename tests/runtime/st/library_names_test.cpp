@@ -157,4 +157,9 @@ TEST_CASE("names that nobody has may be of libraries that are not here", "[st][l
     CHECK(told.find("FB_JsonDomParser (a.st:1), F_Foreign (a.st:2)") != std::string::npos);
     CHECK(told.find("a.st:2:44: error[L0905]") != std::string::npos);
     CHECK(out.count() == 2);
+    Diagnostics apart;
+    options.references = {{"Tc2_Standard", {project, 1, 1}}, {"Tc3_Module", {project, 2, 1}}};
+    CHECK_FALSE(st::compile({source}, standard_blocks(), apart, options));
+    CHECK(apart.render().find("a.st:1:19: error[L0904]") != std::string::npos);
+    CHECK(apart.render().find("L0927") == std::string::npos);
 }

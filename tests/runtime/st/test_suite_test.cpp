@@ -173,4 +173,15 @@ TEST_CASE("Files of tests find the sources that they name", "[st]") {
     CHECK(names("a/y.st", "TEST 'y' VAR i : INT; END_VAR i := red; END_TEST") == "a/helper.st ");
     CHECK(names("a/y.st", "TEST 'y' VAR red : INT; END_VAR red := 1; END_TEST").empty());
     CHECK(names("a/y.st", "TEST 'y' ASSERT_TRUE(TRUE); END_TEST").empty());
+    pool.add(
+        file("a/derived.st", "TYPE Derived EXTENDS Base : STRUCT b : INT; END_STRUCT END_TYPE"));
+    pool.add(file("a/base.st", "TYPE Base : STRUCT a : INT; END_STRUCT END_TYPE"));
+    CHECK(names("a/y.st", "TEST 'y' VAR d : Derived; END_VAR END_TEST") ==
+          "a/derived.st a/base.st ");
+    pool.add(file("a/list.st", "VAR_GLOBAL supply : Supply; END_VAR"));
+    pool.add(file("a/supply.st", "FUNCTION_BLOCK Supply END_FUNCTION_BLOCK"));
+    CHECK(names("a/y.st", "TEST 'y' supply(); END_TEST") == "a/supply.st a/list.st ");
+    CHECK(names("a/y.st", "TEST 'y' VAR s : Supply; END_VAR supply(); END_TEST") ==
+          "a/supply.st a/list.st ");
+    CHECK(names("a/y.st", "TEST 'y' VAR s : Supply; END_VAR END_TEST") == "a/supply.st ");
 }
