@@ -250,6 +250,17 @@ def check_older_forms():
     assert "'to' is a word of the language, not a name" in run("check", wrong, code=2)
 
 
+def check_prefix():
+    """Names with a prefix are those of its namespace."""
+    plain = drawn(RUNG)
+    prefixed = re.sub(r"<(/?)(?=[a-zA-Z])", r"<\1ppx:", plain).replace("xmlns=", "xmlns:ppx=")
+    assert "<ppx:project xmlns:ppx=" in prefixed, prefixed
+    write("prefixed/plc.xml", prefixed)
+    assert run("check", "prefixed/plc.xml").startswith("ok"), "a namespace with a prefix"
+    run("new", "prefixed/made", "--from", "prefixed/plc.xml")
+    assert "type: P," in (work / "prefixed/made.yaml").read_text()
+
+
 def check_yaml_folder():
     program = ("lineshaft: 1\ntitle: t\ntasks: {main: {every: 10 ms}}\nblocks: {x: {type: axis, task: main}}\n"
                "run: {for: 20 ms}\n")
@@ -857,6 +868,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_configuration()
     check_chart_flags()
     check_older_forms()
+    check_prefix()
     check_yaml_folder()
     check_neighbours()
     check_nothing()
