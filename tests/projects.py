@@ -182,9 +182,9 @@ def check_configuration():
           "  END_RESOURCE\nEND_CONFIGURATION\n")
     run("new", "placed", "--from", "placed.st")
     text = (work / "placed.yaml").read_text()
-    for line in ("  IX0_2: false  # start", "  IW2: 0  # level", '  "%IX0.2": inputs.IX0_2', '"%QX0.0", "%QW0", "%IX0.2"'):
+    for line in ("  IX0_2: false  # start", "  IW1: 0  # level", '  "%IX0.2": inputs.IX0_2', '"%QX0.0", "%QW0", "%IX0.2"'):
         assert line in text, text
-    run("run", "--quiet", "placed.yaml", "--force", "inputs.IW2=7", "--trace", "placed.csv")
+    run("run", "--quiet", "placed.yaml", "--force", "inputs.IW1=7", "--trace", "placed.csv")
     assert (work / "placed.csv").read_text().splitlines()[1].startswith("0,0,1,7,"), "lamp is no bit of speed"
 
 
@@ -241,12 +241,25 @@ def check_older_forms():
     write("old/ident.fun", "FUNCTION ST_ident : UINT\nVAR_INPUT name, st_ident : UDINT; END_VAR\nEND_FUNCTION\n")
     write("old/log.typ", "TYPE LogRead : STRUCT\n  entry : UDINT;\n END_STRUCT; END_TYPE\n")
     write("old/log.fun", "FUNCTION_BLOCK logRead\nVAR_INPUT enable : BOOL; END_VAR\nEND_FUNCTION_BLOCK\n")
+    write("old/mixer.fun", "FUNCTION_BLOCK Mixer\nVAR_INPUT on : BOOL; END_VAR\nVAR inner : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
     said = run("check", "old")
+    assert "'inner' is declared and never used" not in said, "the body of a binary library is not here"
     assert said.splitlines()[0] == "ok  old" and "'logRead' differs from 'LogRead' in capitals alone" in said, said
     wrong = write("wrong.var", "VAR\n  pins : STRING := (0);\nEND_VAR\n")
     assert "expected STRING, found a whole number" in run("check", wrong, code=2)
     wrong = write("wrong.st", "FUNCTION_BLOCK B\nVAR_INPUT to : UDINT; END_VAR\nEND_FUNCTION_BLOCK\n")
     assert "'to' is a word of the language, not a name" in run("check", wrong, code=2)
+
+
+def check_prefix():
+    """Names with a prefix are those of its namespace."""
+    plain = drawn(RUNG)
+    prefixed = re.sub(r"<(/?)(?=[a-zA-Z])", r"<\1ppx:", plain).replace("xmlns=", "xmlns:ppx=")
+    assert "<ppx:project xmlns:ppx=" in prefixed, prefixed
+    write("prefixed/plc.xml", prefixed)
+    assert run("check", "prefixed/plc.xml").startswith("ok"), "a namespace with a prefix"
+    run("new", "prefixed/made", "--from", "prefixed/plc.xml")
+    assert "type: P," in (work / "prefixed/made.yaml").read_text()
 
 
 def check_yaml_folder():
@@ -884,6 +897,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_configuration()
     check_chart_flags()
     check_older_forms()
+    check_prefix()
     check_yaml_folder()
     check_neighbours()
     check_nothing()

@@ -23,9 +23,23 @@ std::optional<std::uint32_t> take_number(std::string_view& text) {
     return number;
 }
 
+std::uint32_t bytes_of_size(const ImageAddress& address) {
+    return (address.bits + 7U) / 8;
+}
+
+/// Bits that have one number before the point.
+std::uint32_t bits_together(AddressCount count) {
+    return count == AddressCount::words ? 16 : 8;
+}
+
+void set_bit(ImageAddress& address, std::uint32_t number, std::uint32_t bit, AddressCount count) {
+    address.byte = number * (bits_together(count) / 8) + bit / 8;
+    address.bit = bit % 8;
+}
+
 }  // namespace
 
-std::optional<ImageAddress> read_address(std::string_view text) {
+std::optional<ImageAddress> read_address(std::string_view text, AddressCount count) {
     if (text.size() < 3 || text.front() != '%') return {};
     const auto area = area_letters.find(upper(text[1]));
     const auto size = size_letters.find(upper(text[2]));
@@ -45,25 +59,25 @@ std::optional<ImageAddress> read_address(std::string_view text) {
         address.byte = address.byte * most_inner + *inner;
         is_hierarchical = true;
     }
-    if (is_hierarchical) address.byte *= (address.bits + 7U) / 8;
+    if (is_hierarchical || count != AddressCount::bytes) address.byte *= bytes_of_size(address);
     if (address.bits > 1) return text.empty() ? std::optional(address) : std::nullopt;
+    const std::uint32_t together = bits_together(count);
     if (text.empty()) {
-        address.byte = *first / 8;
-        address.bit = *first % 8;
+        set_bit(address, *first / together, *first % together, count);
         return address;
     }
     if (text.front() != '.') return {};
     text.remove_prefix(1);
     const auto bit = take_number(text);
-    if (!bit || *bit > 7 || !text.empty()) return {};
-    address.bit = static_cast<std::uint8_t>(*bit);
+    if (!bit || *bit >= together || !text.empty()) return {};
+    set_bit(address, address.byte, *bit, count);
     return address;
 }
 
-std::vector<ImageAddress> addresses_of_range(std::string_view text) {
+std::vector<ImageAddress> addresses_of_range(std::string_view text, AddressCount count) {
     const std::size_t dots = text.find("..");
-    auto address = read_address(text.substr(0, dots));
-    const auto last = dots == text.npos ? address : read_address(text.substr(dots + 2));
+    auto address = read_address(text.substr(0, dots), count);
+    const auto last = dots == text.npos ? address : read_address(text.substr(dots + 2), count);
     if (!address || !last || address->area != last->area || address->bits != last->bits) return {};
     if (last->end() > longest_area) return {};
     const auto first_bit = [](const ImageAddress& a) { return 8 * a.byte + a.bit; };
@@ -76,13 +90,17 @@ std::vector<ImageAddress> addresses_of_range(std::string_view text) {
     return all;
 }
 
-std::string text_of(const ImageAddress& address) {
+std::string text_of(const ImageAddress& address, AddressCount count) {
     std::size_t size = 0;
     while (sizes[size] != address.bits) ++size;
+    const bool is_bit = address.bits == 1;
+    const std::uint32_t together = is_bit                         ? bits_together(count) / 8
+                                   : count == AddressCount::bytes ? 1
+                                                                  : bytes_of_size(address);
     const std::string text =
         fmt::format("%{}{}{}", area_letters[static_cast<std::size_t>(address.area)],
-                    size_letters[size], address.byte);
-    return address.bits > 1 ? text : fmt::format("{}.{}", text, address.bit);
+                    size_letters[size], address.byte / together);
+    return is_bit ? fmt::format("{}.{}", text, 8 * (address.byte % together) + address.bit) : text;
 }
 
 }  // namespace lineshaft

@@ -8,8 +8,7 @@
 
 namespace lineshaft {
 
-/// A place in a program's process image: `%IX0.3`, `%QW4`, `%MD8`. Bytes are counted, so `%MW1`
-/// has the second byte of `%MW0`.
+/// A place in a program's process image, by its bytes.
 struct ImageAddress {
     enum class Area : std::uint8_t { input, output, memory };  ///< I, Q, M
 
@@ -22,6 +21,13 @@ struct ImageAddress {
     bool operator==(const ImageAddress&) const = default;
 };
 
+/// What the number of an address counts.
+enum class AddressCount : std::uint8_t {
+    bytes,  ///< `%MW1` has the second byte of `%MW0`
+    sizes,  ///< `%MW1` is the second word, `%MX1.0` a bit of the second byte
+    words,  ///< as sizes, and `%MX1.9` is a bit of `%MW1`
+};
+
 inline constexpr int areas = 3;
 
 /// Bytes that an area may have.
@@ -29,14 +35,14 @@ inline constexpr std::uint32_t longest_area = 65536;
 
 /// Also `%I0.3` and, as the standard numbers bits, `%IX3`. Of a hierarchy, `%IW1.2`, `%QX1.2.3`,
 /// each number before the last one (of a bit, its own) counts 256 of the next: `%IW1.2` is the word
-/// of number 258, `%IW516`. Empty where the text is none; it may lie beyond its area.
-std::optional<ImageAddress> read_address(std::string_view text);
+/// of number 258, at byte 516. Empty where the text is none; it may lie beyond its area.
+std::optional<ImageAddress> read_address(std::string_view text, AddressCount count);
 
 /// `%MW0..%MW99`: one behind the other, without gaps; of an address alone it is it. Empty for what
 /// is none, or leaves its area.
-std::vector<ImageAddress> addresses_of_range(std::string_view text);
+std::vector<ImageAddress> addresses_of_range(std::string_view text, AddressCount count);
 
 /// In capital letters, with its size: `%IX0.3`.
-std::string text_of(const ImageAddress& address);
+std::string text_of(const ImageAddress& address, AddressCount count);
 
 }  // namespace lineshaft

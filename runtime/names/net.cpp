@@ -13,10 +13,10 @@ namespace lineshaft {
 
 namespace {
 
-template <class Node>
-std::vector<std::string> names(const std::vector<Node>& nodes) {
+template <class Nodes>
+std::vector<std::string> names(const Nodes& nodes) {
     std::vector<std::string> names;
-    for (const Node& node : nodes) names.push_back(node.name);
+    for (const auto& node : nodes) names.emplace_back(node.name);
     return names;
 }
 
@@ -92,9 +92,16 @@ std::string_view Net::misspelt(std::string_view port) const {
     return known ? std::string_view() : port;
 }
 
+AddressCount Net::count_of_addresses() const {
+    const auto it = instance_numbers.find(std::string(st::image_name));
+    if (it == instance_numbers.end()) return AddressCount::bytes;
+    return st::count_of_addresses(*instance(it->second).type);
+}
+
 std::optional<Signal> Net::find_address(const Reader& read, const Node& node,
                                         std::string_view text) const {
-    const auto address = read_address(text);
+    const AddressCount count = count_of_addresses();
+    const auto address = read_address(text, count);
     if (!address || address->end() > longest_area) {
         read.fail(
             code::unknown_signal, node, fmt::format("'{}' is not an address", text),
@@ -106,12 +113,17 @@ std::optional<Signal> Net::find_address(const Reader& read, const Node& node,
     const auto it = instance_numbers.find(std::string(st::image_name));
     const Field* field = it == instance_numbers.end()
                              ? nullptr
-                             : instance(it->second).type->find_readable(text_of(*address));
+                             : instance(it->second).type->find_readable(text_of(*address, count));
     if (field) return signal(port(it->second, *field));
-    if (kinds)
+    if (!kinds) return {};
+    if (it == instance_numbers.end())
         read.fail(code::unknown_signal, node,
                   fmt::format("the program has no process image for '{}'", text),
                   "its sources name no address: x AT %QW4 : INT");
+    else
+        read.fail(code::unknown_signal, node,
+                  fmt::format("neither the sources nor the program's file name '{}'", text),
+                  suggest(text, names(instance(it->second).type->fields)));
     return {};
 }
 

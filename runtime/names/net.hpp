@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "runtime/model/address.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/names/signal.hpp"
 #include "runtime/names/task_settings.hpp"
@@ -97,6 +98,9 @@ struct Net {
     /// The signal of that name, not yet laid out. L0204, L0203 or L0208 at `node` for one that is
     /// not there; nothing is said again of what could not be read.
     std::optional<Signal> find(const Reader& read, const Node& node, std::string_view name) const;
+
+    /// As the sources write addresses, and so the program's file.
+    AddressCount count_of_addresses() const;
 
     /// The block of that name. -1, and L0204 at `node`, when there is none; nothing is said where
     /// it may be a data block of sources with a mistake.

@@ -37,7 +37,7 @@ std::string_view usual_type(Type type) {
 
 /// Of an address of the process image a type of its size.
 std::string_view usual_type(const Target& target) {
-    const auto address = read_address(target.signal.name);
+    const auto address = read_address(target.signal.name, AddressCount::words);
     if (!address || target.signal.type != Type::integer) return usual_type(target.signal.type);
     const bool has_sign = target.field.minimum < 0;
     if (address->bits == 64) return "int64";
@@ -144,10 +144,10 @@ int add(Connecting& to, const RegisterPlan& plan, std::vector<MappedSignal>& tab
 
 /// `%MW0..%MW99`: one behind the other.
 void add_range(Connecting& to, RegisterPlan plan, std::vector<MappedSignal>& table) {
-    const auto addresses = addresses_of_range(plan.signal.text);
+    const auto addresses = addresses_of_range(plan.signal.text, to.net.count_of_addresses());
     if (addresses.size() < 2) return void(add(to, plan, table));
     for (const ImageAddress& address : addresses) {
-        plan.signal.text = text_of(address);
+        plan.signal.text = text_of(address, to.net.count_of_addresses());
         const int next = add(to, plan, table);
         if (next == 0) return;
         plan.address.text = std::to_string(next);

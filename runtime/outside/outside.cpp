@@ -17,6 +17,13 @@ const Field* settable_field(const Net& net, const Target& target) {
     return net.instance(port).type->find_settable(net.field(port).name);
 }
 
+/// An output whose block reads what others write there.
+bool is_set_where_read(const Net& net, const Target& target) {
+    const Field* field = settable_field(net, target);
+    return field && target.field.direction == Direction::output &&
+           field->offset == target.field.offset;
+}
+
 bool is_wired(const Net& net, const Target& target) {
     const Field* field = settable_field(net, target);
     if (!field) return false;
@@ -70,6 +77,8 @@ std::optional<Target> find_target(const Connecting& to, const Node& node) {
         target.field.type = target.signal.type;
         target.field.direction = Direction::input;
     }
+    if (target.is_of_block() && is_set_where_read(to.net, target))
+        target.field.direction = Direction::local;
     target.field.name = node.text;
     return target;
 }

@@ -138,6 +138,7 @@ bool is_plcopen(const std::filesystem::path& file) {
 void read_plcopen(const Reading& to, const std::string& path, const Mark& where) {
     const auto file = XmlFile::read(path, to.out, where);
     if (!file) return;
+    file->remove_prefix();
     if (std::string_view(file->root().name()) != "project")
         return to.out.add(code::not_an_object, file->mark_of_tag(file->root()),
                           fmt::format("<{}> is no project of PLCopen XML", file->root().name()),

@@ -160,8 +160,29 @@ std::unique_ptr<XmlFile> XmlFile::parse(std::shared_ptr<const SourceFile> file, 
     return xml;
 }
 
+void XmlFile::remove_prefix() {
+    const std::string_view name = root().name();
+    const std::size_t colon = name.find(':');
+    if (colon == name.npos) return;
+    struct Renaming : pugi::xml_tree_walker {
+        std::string prefix;
+
+        bool for_each(pugi::xml_node& node) override {
+            const std::string written = node.name();
+            if (written.starts_with(prefix)) node.set_name(written.substr(prefix.size()).c_str());
+            return true;
+        }
+    } renaming;
+    renaming.prefix = prefix_ = name.substr(0, colon + 1);
+    root().traverse(renaming);
+    pugi::xml_node whole = root();
+    renaming.for_each(whole);
+}
+
 Part XmlFile::tag(pugi::xml_node element) const {
-    const auto name = static_cast<std::size_t>(element.offset_debug());
+    const auto begin = static_cast<std::size_t>(element.offset_debug());
+    const bool has_prefix = !prefix_.empty() && text().substr(begin).starts_with(prefix_);
+    const std::size_t name = begin + (has_prefix ? prefix_.size() : 0);
     return {name - 1, name + std::strlen(element.name())};
 }
 

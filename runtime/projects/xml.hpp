@@ -36,7 +36,11 @@ class XmlFile : public PlacedFile {
 
     pugi::xml_node root() const { return document_.document_element(); }
 
-    /// The element's tag, from `<` to its name's end.
+    /// Where the root has one, `<ppx:project>`: all names of that prefix lose it, and those of
+    /// other namespaces keep theirs.
+    void remove_prefix();
+
+    /// The element's name and the character before it, which is `<` where it has no prefix.
     Part tag(pugi::xml_node element) const;
     Mark mark_of_tag(pugi::xml_node element) const { return mark(tag(element)); }
     /// As it is written, with its entities; an empty part: there is none.
@@ -62,6 +66,7 @@ class XmlFile : public PlacedFile {
 
     std::vector<char> buffer_;  ///< the text, in which the parser has put its ends
     pugi::xml_document document_;
+    std::string prefix_;
     pugi::xml_parse_result result_;
 };
 

@@ -19,9 +19,9 @@ namespace lineshaft {
 namespace {
 
 /// `"%QW4"` anywhere in a program's file: nothing else there begins with '%'.
-void find_addresses(const Node& node, std::vector<ImageAddress>& found) {
-    for (const ImageAddress& address : addresses_of_range(node.text))
-        if (std::ranges::find(found, address) == found.end()) found.push_back(address);
+void find_addresses(const Node& node, std::vector<std::string>& found) {
+    const bool is_new = std::ranges::find(found, node.text) == found.end();
+    if (node.text.starts_with('%') && is_new) found.push_back(node.text);
     for (const Node& item : node.items) find_addresses(item, found);
     for (const auto& [key, value] : node.entries) {
         find_addresses(key, found);

@@ -28,7 +28,6 @@ constexpr Operator operators[] = {
     {"lt", " < ", false, Value::Form::other},   {"ne", " <> ", false, Value::Form::other}};
 /// Written as `NOT a`, and as the argument itself.
 constexpr std::string_view prefixes[] = {"not", "move"};
-constexpr std::size_t most_typed = 200;  // elements that are looked at for one type
 
 bool is_en(const Pin& pin) {
     return st::same_name(pin.name, "EN");
@@ -361,17 +360,6 @@ Value NetworkText::target_of(std::size_t i, const std::string& type) {
     return words(context_.variables.make("_wire", known), place_of(box), known);
 }
 
-/// Of the variables that a result goes to.
-std::string NetworkText::type_of_takers(std::size_t i) const {
-    for (const Use& use : states_[i].uses) {
-        const Element& to = drawing_.elements[use.by];
-        if (use.pin == "eno" || to.kind != Drawn::out_variable) continue;
-        std::string type = context_.types.of_expression(file_.plain(to.node.child("expression")));
-        if (!type.empty() && type != "#") return type;
-    }
-    return {};
-}
-
 /// What a variable of the type begins with; empty: not known.
 std::string NetworkText::initial_value(const std::string& type) {
     static constexpr std::string_view numbers[] = {"#",     "sint",  "int",   "dint",  "lint",
@@ -469,32 +457,6 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
             value = words("FALSE", place);
     }
     return pin->is_negated ? negated(value, place) : value;
-}
-
-/// While its arguments are not evaluated yet. `seen` keeps lines that go around from doing so
-/// without end.
-std::string NetworkText::type_of_result(std::size_t i, std::set<std::size_t>& seen) const {
-    const Element& box = drawing_.elements[i];
-    if (!seen.insert(i).second || seen.size() > most_typed) return {};
-    std::vector<std::string> types;
-    for (const Pin& pin : box.inputs) {
-        if (is_en(pin) || (pin.lines.empty() && !pin.expression)) continue;
-        const std::string type = pin.lines.empty()
-                                     ? context_.types.of_expression(file_.plain(pin.expression))
-                                     : type_of(pin.lines.front(), seen);
-        types.push_back(type.empty() ? "#" : type);
-    }
-    return context_.types.of_call(type_name_of(box), types);
-}
-
-std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) const {
-    const Element& from = drawing_.elements[line.from];
-    if (from.kind == Drawn::contact || from.kind == Drawn::left_rail) return "BOOL";
-    if (from.kind != Drawn::block)
-        return context_.types.of_expression(file_.plain(from.node.child("expression")));
-    const std::string instance = attribute(from, "instanceName");
-    return instance.empty() ? type_of_result(line.from, seen)
-                            : context_.types.of_output(instance, line.pin);
 }
 
 }  // namespace lineshaft::projects

@@ -132,7 +132,9 @@ class NetworkText {
     std::string type_name_of(const Element& box) const;
     std::string call_type(const Element& box) const;
     std::string type_of_result(std::size_t i, std::set<std::size_t>& seen) const;
+    std::vector<std::string> types_of_arguments(std::size_t i, std::set<std::size_t>& seen) const;
     std::string type_of_takers(std::size_t i) const;
+    std::string type_of_taker(std::size_t i, std::size_t by, std::set<std::size_t>& seen) const;
     std::string type_of(const Line& line, std::set<std::size_t>& seen) const;
 
     BodyContext& context_;

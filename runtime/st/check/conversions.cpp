@@ -200,7 +200,8 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     std::string help;
     if (to.kind == Kind::time && from.is_number())
         help = from.is_any() ? "write a time with its unit: T#500ms"
-                             : fmt::format("write {}_TO_TIME(...), of ms", from.plain().name);
+                             : fmt::format("write {}_TO_TIME(...), of {}", from.plain().name,
+                                           e.place.dialect().vendor == Vendor::matiec ? "s" : "ms");
     if (to.kind == Kind::structure && describe(to) == describe(from))
         help = "declare a TYPE, and both variables of that";
     if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";

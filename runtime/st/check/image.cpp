@@ -8,23 +8,15 @@ namespace lineshaft::st {
 
 namespace {
 
-std::uint32_t bytes_of_size(const ImageAddress& address) {
-    return (address.bits + 7U) / 8;
-}
-
 /// As the dialect writes it.
-std::string text_in(const Dialect& dialect, ImageAddress address) {
-    if (dialect.addresses_count_sizes) address.byte /= bytes_of_size(address);
-    return text_of(address);
+std::string text_in(const Dialect& dialect, const ImageAddress& address) {
+    return text_of(address, dialect.addresses_count);
 }
 
 std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
-    auto address =
-        token.text.starts_with('%') ? read_address(token.text) : read_classic_address(token.text);
-    const bool is_hierarchical =
-        address && address->bits > 1 && token.text.find('.') != token.text.npos;
-    if (address && token.place.dialect().addresses_count_sizes && !is_hierarchical)
-        address->byte *= bytes_of_size(*address);
+    const AddressCount count = token.place.dialect().addresses_count;
+    const auto address = token.text.starts_with('%') ? read_address(token.text, count)
+                                                     : read_classic_address(token.text);
     if (!address) {
         c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
                "write the area I, Q or M, the size X, B, W, D or L, and the byte: %IX0.3, %QW4, "
@@ -116,10 +108,20 @@ void warn_of_crossing(Checking& c, const Image& image) {
                    fmt::format("'{}' at {} has bytes of '{}' at {}", declared[k]->text,
                                text_in(dialect, declared[k]->address), declared[i]->text,
                                text_in(dialect, declared[i]->address)),
-                   dialect.addresses_count_sizes ? "%MD0 has the words %MW0 and %MW1"
-                                                 : "addresses count bytes: behind %MW0 comes %MW2");
+                   dialect.addresses_count == AddressCount::bytes
+                       ? "addresses count bytes: behind %MW0 comes %MW2"
+                       : "%MD0 has the words %MW0 and %MW1");
             break;
         }
+}
+
+/// As all sources that name an address count, else bytes.
+AddressCount count_of(const Image& image) {
+    const auto count = [](const Variable* v) { return v->name.place.dialect().addresses_count; };
+    const AddressCount first = count(image.variables.front());
+    const bool is_one =
+        std::ranges::all_of(image.variables, [&](const Variable* v) { return count(v) == first; });
+    return is_one ? first : AddressCount::bytes;
 }
 
 /// What it takes and gives stands in the image then, and is wired there.
@@ -187,7 +189,7 @@ Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
     array.upper = 1023;
     array.element = &bits_type(8);
     Variable& bytes = c.make_variable(at, name, &array);
-    bytes.is_direct = bytes.used = true;
+    bytes.is_direct = bytes.used = bytes.is_set = true;
     put(c, bytes, {.area = area, .bits = 8});
     return bytes;
 }
@@ -200,10 +202,13 @@ void finish_image(Checking& c) {
         std::uint64_t& size = sizes[image.part_of(variable->address)];
         size = std::max(size, (range_of(*variable).second + 7) / 8);
     }
-    for (const ImageAddress& address : c.tree.addresses) {
-        std::uint64_t& size = sizes[image.part_of(address)];
-        size = std::max<std::uint64_t>(size, address.end());
-    }
+    image.count = count_of(image);
+    for (const std::string& text : c.tree.addresses)
+        for (const ImageAddress& address : addresses_of_range(text, image.count)) {
+            image.named.push_back(address);
+            std::uint64_t& size = sizes[image.part_of(address)];
+            size = std::max<std::uint64_t>(size, address.end());
+        }
     std::uint64_t at = 0;
     for (std::size_t part = 0; part < Image::parts; ++part) {
         image.begins[part] = static_cast<std::uint32_t>(at);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 
@@ -178,10 +179,17 @@ void order_routines(Checking& c) {
     tell_of_rounds(c, o.rounds);
 }
 
+/// Of a library of Automation Studio, whose bodies are compiled: a `.fun` alone declares it.
+static bool is_declared_alone(const Pou& unit) {
+    return unit.body.empty() && unit.methods.empty() && unit.place.source &&
+           lower(unit.place.source->file->path).ends_with(".fun");
+}
+
 void warn_of_unused(Checking& c) {
     for (const Routine& routine : c.checked.routines)
         for (const Variable& variable : routine.variables)
             if (!variable.used && !routine.is_test() && !routine.pou->is_tests &&
+                !is_declared_alone(*routine.pou) &&
                 (variable.section == Section::local || variable.section == Section::temp))
                 c.warn(code::variable_never_used, variable.name.place,
                        fmt::format("'{}' is declared and never used", variable.text), "remove it");

@@ -240,8 +240,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     if (target.kind == E::self || target.kind == E::deref) return true;
     if (target.kind != E::name && target.kind != E::member)
         return refuse("a value", "a variable, an element or a member stands left of ':='");
-    const Variable* variable = target.variable;
+    Variable* variable = target.variable;
     if (!variable) return false;
+    if (variable->space == Space::image) variable->is_set = true;
     const bool own =
         target.kind == E::name || (target.kind == E::member && target.operands[0]->kind == E::self);
     const bool of_instance = target.kind == E::member && target.operands[0]->type &&

@@ -52,6 +52,29 @@ void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
     write_text(to, {text.data(), text.size()});
 }
 
+void write_bits(std::byte* to, std::uint64_t value) {
+    write_text(to, fmt::format("16#{:x}", value));
+}
+
+void write_ten_digits(std::byte* to, double value) {
+    write_text(to, fmt::format("{:.10g}", value));
+}
+
+void write_time_in_parts(std::byte* to, std::int64_t value) {
+    constexpr std::int64_t second = 1'000'000'000, minute = 60 * second, hour = 60 * minute,
+                           day = 24 * hour;
+    std::string text = fmt::format("T#{}d", value / day);
+    const auto add = [&](std::int64_t whole, std::int64_t unit, std::string_view name) {
+        if (value % whole != 0) text += fmt::format("{}{}", value % whole / unit, name);
+    };
+    add(day, hour, "h");
+    add(hour, minute, "m");
+    add(minute, second, "s");
+    if (value % second != 0)
+        text += fmt::format("{:g}ms", static_cast<double>(value % second) / 1e6);
+    write_text(to, text);
+}
+
 std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
     std::string_view text = text_at(from);
     text.remove_prefix(text.find('#') + 1);  // 0 without one

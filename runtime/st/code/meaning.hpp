@@ -256,6 +256,11 @@ void write_truth(std::byte* to, bool value);
 
 void write_time(std::byte* to, std::uint64_t kind, std::int64_t value);
 
+/// As MatIEC writes them: '16#ff', ten digits of a real number, 'T#0d0h0m2s500ms'.
+void write_bits(std::byte* to, std::uint64_t value);
+void write_ten_digits(std::byte* to, double value);
+void write_time_in_parts(std::byte* to, std::int64_t value);
+
 /// `T#1s`, or without what stands before '#'; 0 where it is none.
 std::int64_t time_of_text(std::uint64_t kind, const std::byte* from);
 

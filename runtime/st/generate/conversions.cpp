@@ -54,18 +54,22 @@ Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     return is_date ? w.emit(Op::sub_lint, wanted, slot, clock) : clock;
 }
 
-/// As a whole number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE
-/// in s, the long ones in ns; in days since 1990 a DATE in 16 bits is, as Siemens has it.
-Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, bool in_days,
-                     Slot wanted) {
-    const Type& time = from.is_time() ? from : to;
+/// ns of what a number counts of a time.
+using Unit = std::uint64_t;
+constexpr Unit of_ns = 1, of_ms = 1'000'000, of_seconds = 1'000'000'000,
+               of_days = 86'400'000'000'000;
+
+/// As a number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE in s,
+/// the long ones in ns.
+Unit unit_of(const Type& time) {
     const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
-    constexpr std::uint64_t day = 86'400'000'000'000;
-    const Slot unit = w.constant_slot(in_days          ? day
-                                      : time.counts_ns ? 1
-                                      : in_seconds     ? 1'000'000'000
-                                                       : 1'000'000);
-    const Slot start = w.constant_slot(in_days ? 7305 * day : 0);
+    return time.counts_ns ? of_ns : in_seconds ? of_seconds : of_ms;
+}
+
+/// A whole number; days are those since 1990, as Siemens has a DATE in 16 bits.
+Slot convert_counted(Writing& w, Slot slot, const Type& to, Unit counted, Slot wanted) {
+    const Slot unit = w.constant_slot(counted), start = w.constant_slot(7305 * of_days);
+    const bool in_days = counted == of_days;
     if (to.is_time()) {
         if (!in_days) return w.emit(Op::mul_lint, wanted, slot, unit);
         return w.emit(Op::add_lint, wanted, w.emit(Op::mul_lint, none, slot, unit), start);
@@ -74,22 +78,37 @@ Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, bo
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
 }
 
+Slot convert_real_time(Writing& w, Slot slot, const Type& to, Unit counted, Slot wanted) {
+    const Slot unit = w.constant_slot(lreal_type, {.real = static_cast<double>(counted)});
+    if (to.is_time())
+        return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, unit));
+    const Slot real = w.emit(Op::lreal_from_signed, none, slot);
+    const Slot count = w.emit(Op::div_lreal, wanted, real, unit);
+    return to.bits == 32 ? w.emit(Op::narrow, wanted, count) : count;
+}
+
 /// A time is in ns as an integer of 64 bits, but in dialects that count those as all others.
 Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
-    const bool in_seconds = time.kind == Kind::date || time.kind == Kind::moment;
-    if (number.is_real()) {
-        const double unit = time.counts_ns ? 1 : in_seconds ? 1e9 : 1e6;
-        const Slot one = w.constant_slot(lreal_type, {.real = unit});
-        if (from.is_real())
-            return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, one));
-        const Slot real = w.emit(Op::lreal_from_signed, none, slot);
-        const Slot counted = w.emit(Op::div_lreal, wanted, real, one);
-        return to.bits == 32 ? w.emit(Op::narrow, wanted, counted) : counted;
-    }
+    if (number.is_real()) return convert_real_time(w, slot, to, unit_of(time), wanted);
     const bool in_days = time.kind == Kind::date && number.bits == 16;
-    return number.bits == 64 ? slot : convert_counted(w, slot, from, to, in_days, wanted);
+    return number.bits == 64
+               ? slot
+               : convert_counted(w, slot, to, in_days ? of_days : unit_of(time), wanted);
+}
+
+/// MatIEC counts all times in seconds.
+bool is_of_matiec(const Expression& e) {
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    return e.place.dialect().vendor == Vendor::matiec && from.is_time() != to.is_time() &&
+           to.kind != Kind::boolean;
+}
+
+Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
+    const bool is_real = from.is_real() || to.is_real();
+    return is_real ? convert_real_time(w, slot, to, of_seconds, wanted)
+                   : convert_counted(w, slot, to, of_seconds, wanted);
 }
 
 /// Of a TIME, a TOD, a DT or a DATE and 64 bits, of CODESYS also 16, which are no days there; the
@@ -129,7 +148,7 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
     const bool is_real = from.is_real();
     if (is_real) slot = w.emit(Op::round_lint, none, w.emit(Op::round_away, none, slot));
     if (is_real || is_counted(e))
-        slot = convert_counted(w, slot, is_real ? lint_type : from, to, false, none);
+        slot = convert_counted(w, slot, to, unit_of(to), none);
     else
         slot = convert(w, slot, from, to, false, none);
     return in_whole_units(w, slot, to, wanted);
@@ -216,8 +235,10 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         (e.type->is_number() || e.type->is_bits()))
         return convert_wide(w, wide_value(w, operand), *e.type, wanted);
     if (is_whole(e)) return whole_time(w, e, value(w, operand), wanted);
+    const Type &given = operand.type->plain(), &to = e.type->plain();
+    if (is_of_matiec(e)) return convert_seconds(w, value(w, operand), given, to, wanted);
     if (is_counted(e))
-        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(), false,
+        return convert_counted(w, value(w, operand), to, unit_of(given.is_time() ? given : to),
                                wanted);
     Slot from = value(w, operand);
     if (e.type->kind == Kind::boolean && is_of_s7(e) && is_whole_number(*operand.type))

@@ -68,7 +68,8 @@ void fill_paths_of(Writing& w, const Paths& paths, Writing::Image& image, std::u
 }
 
 std::string path_of_application(const Token& name) {
-    const bool is_of_codesys = name.place.source && &name.place.dialect() == &codesys;
+    const bool is_of_codesys = name.place.source && (&name.place.dialect() == &codesys ||
+                                                     &name.place.dialect() == &word_addressed);
     return is_of_codesys ? "Device.Application" : "Project";
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/generate/layout.hpp"
@@ -45,6 +46,14 @@ void write_no_time(Writing& w, Slot number, Slot text) {
     w.land(end);
 }
 
+/// As MatIEC writes a number; none: it writes it as all others do.
+std::optional<Op> text_op_of_matiec(const Type& from) {
+    if (from.is_bits() && from.kind != Kind::boolean) return Op::text_of_bits;
+    if (from.is_real()) return Op::text_of_ten_digits;
+    if (from.kind == Kind::time) return Op::text_of_parts;
+    return {};
+}
+
 Slot text_conversion(Writing& w, const Expression& e) {
     const Expression& from = *e.operands[0];
     if (from.type->kind == Type::Kind::text) return text_address(w, from);
@@ -63,6 +72,11 @@ Slot text_conversion(Writing& w, const Expression& e) {
         w.put(Op::move, text + 1, number);
         return made;
     }
+    if (e.place.dialect().vendor == Vendor::matiec)
+        if (const auto op = text_op_of_matiec(from.type->plain())) {
+            w.put(*op, made, number);
+            return made;
+        }
     if (from.type->is_time()) {
         w.put(Op::text_of_time, made, number, static_cast<Slot>(from.type->kind));
         if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&

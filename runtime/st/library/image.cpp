@@ -90,6 +90,19 @@ Field field_of(const Type& type, const ImageAddress& address) {
     return field;
 }
 
+/// A variable that sources write has a byte in common with it, or the same bits.
+bool is_set_by_sources(const Image& image, const ImageAddress& address) {
+    const std::uint64_t first = image.bit_of(address), end = first + address.bits;
+    return std::ranges::any_of(image.variables, [&](const Variable* variable) {
+        if (!variable->is_set) return false;
+        const Dialect& dialect = variable->name.place.dialect();
+        const std::uint64_t begin = image.bit_of(variable->address);
+        const std::uint64_t bits =
+            variable->address.bits == 1 ? 1 : packed_bits(*variable->type, dialect);
+        return begin < end && first < begin + bits;
+    });
+}
+
 /// Gives an address its field, of the first variable that is there.
 class Fields {
   public:
@@ -97,13 +110,14 @@ class Fields {
 
     void add(const ImageAddress& address, const Type& type, const Dialect& dialect,
              const Variable* variable) {
-        const std::string name = text_of(address);
+        const std::string name = text_of(address, image_.count);
         if (!seen_.insert(name).second) return;
         ImageKind& kind = made_.image;
         PackedFormat format{PackedFormat::Coding::bit, 1, false, 0};
         if (address.bits > 1) format = packed_format(type, dialect).value();
-        kind.places.push_back(
-            {image_.bit_of(address), format, address.area != ImageAddress::Area::output});
+        const bool is_set =
+            address.area == ImageAddress::Area::output && is_set_by_sources(image_, address);
+        kind.places.push_back({image_.bit_of(address), format, !is_set});
         Field field = field_of(type, address);
         field.name = made_.names.emplace_back(name);
         field.offset = kind.bytes + 16 * (kind.places.size() - 1);
@@ -114,7 +128,7 @@ class Fields {
             if (!type.is_time()) field.unit = variable->unit;
         }
         kind.fields.push_back(field);
-        if (field.direction != Direction::local) return;
+        if (is_set || field.direction == Direction::input) return;
         field.direction = Direction::input;
         kind.fields.push_back(field);
     }
@@ -126,6 +140,10 @@ class Fields {
 };
 
 }  // namespace
+
+AddressCount count_of_addresses(const BlockType& image) {
+    return static_cast<const ImageKind*>(image.context)->count;
+}
 
 BlockType image_type(Library::Made& made, const std::shared_ptr<const Library::Made>& owner,
                      const Global& global) {
@@ -139,10 +157,11 @@ BlockType image_type(Library::Made& made, const std::shared_ptr<const Library::M
                 fields.add(variable->address, *variable->type, variable->name.place.dialect(),
                            variable);
     const Dialect& dialect = image.variables.front()->name.place.dialect();
-    for (const ImageAddress& address : made.tree.addresses)
+    for (const ImageAddress& address : image.named)
         fields.add(address, address.bits == 1 ? bool_type : bits_type(address.bits), dialect,
                    nullptr);
     BlockType type;
+    made.image.count = image.count;
     type.name = image_name;
     type.doc = "process image";
     type.fields = made.image.fields;

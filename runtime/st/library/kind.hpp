@@ -48,6 +48,7 @@ struct ImageKind {
     std::vector<Field> fields;
     std::size_t bytes = 0;
     const std::uint64_t* image = nullptr;  ///< as it begins
+    AddressCount count = AddressCount::bytes;
 };
 
 /// All that the kinds of a library refer to.

@@ -25,8 +25,8 @@ struct Options {
     std::vector<LibraryReference> references =
         {};  ///< to libraries: names that nobody has may be of those that are not here
 
-    std::vector<ImageAddress> addresses =
-        {};  ///< of the process image, that a program's file names
+    std::vector<std::string> addresses =
+        {};  ///< of the process image, and ranges of such, that a program's file names
 
     std::set<const SourceFile*>* foreign = nullptr;  ///< gets the sources that have such names
 
@@ -110,5 +110,8 @@ std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance);
 std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFile>>& sources,
                                const Catalog& standard, Diagnostics& out,
                                const Options& options = {});
+
+/// As the sources write addresses, of the block type that has the process image.
+AddressCount count_of_addresses(const BlockType& image);
 
 }  // namespace lineshaft::st

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -177,6 +178,8 @@ void LibraryNames::note(const Token& name) {
     const auto it = index_.by_name.find(name.text);
     const bool is_plain = !name.quoted && !name.local && name.place.source;
     if (it == index_.by_name.end() || !is_plain || &name.place.dialect() == &scl) return;
+    const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
+    if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
     if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
 }
@@ -276,11 +279,12 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });
     const bool is_catalogs = index_.of_catalog.contains(name) && most <= pins_of_catalog(name);
+    const auto is_of_twincat = [](const LibraryFile* f) { return f->library.starts_with("Tc2_"); };
+    if (of_twincat_.contains(name) && std::ranges::any_of(files, is_of_twincat))
+        std::erase_if(files, std::not_fn(is_of_twincat));
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
-    if (of_twincat_.contains(name))
-        for (const LibraryFile* file : files)
-            if (file->library.starts_with("Tc2_")) return file;
+    if (of_twincat_.contains(name) && is_of_twincat(files.front())) return files.front();
     return is_catalogs ? nullptr : files.front();
 }
 
@@ -314,6 +318,9 @@ void LibraryNames::read(const LibraryFile& file, Tree& tree, Diagnostics& out) {
     uses_standard_source_ = uses_standard_source_ || st::uses_standard_source(tokens);
     note_libraries(tokens);
     parse(std::move(tokens), tree, out);
+    reading_ = file.library;
+    note_names(tree, false);
+    reading_ = {};
 }
 
 void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
@@ -331,7 +338,6 @@ void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
         take_named();
         for (const LibraryFile& file : catalog_.libraries())
             if (taken_.contains(&file) && is_read.insert(&file).second) read(file, tree, out);
-        note_names(tree, false);
     }
 }
 

@@ -21,7 +21,7 @@ namespace lineshaft::st {
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
 ///   all;
-///   - for a name that a taken file uses.
+///   - for a name that a taken file uses: of its own library, if that has it.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
 /// block that has nothing of what they name of theirs is not meant. Names of a library that is not
@@ -64,6 +64,7 @@ class LibraryNames {
     std::set<std::string_view> names_, of_twincat_;       ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
     std::set<std::string_view> said_;           ///< libraries, and names in full
+    std::string_view reading_;                  ///< the library whose file is looked at
     std::set<std::string_view> taken_libraries_;
     std::set<const LibraryFile*> taken_;
     NameSet own_;  ///< libraries that the sources are themselves

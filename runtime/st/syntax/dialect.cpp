@@ -41,7 +41,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .texts_are_bytes = true,
                          .vendor = Vendor::codesys,
                          .texts_have_any_length = true,
-                         .addresses_count_sizes = true,
+                         .addresses_count = AddressCount::sizes,
                          .reals_are_rounded = true,
                          .most_aligned = 8,
                          .text_length = 80,
@@ -52,9 +52,15 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .enumerations_begin_at_zero = true,
                          .times_count_ms = true};
 
+const Dialect word_addressed = [] {
+    Dialect made = codesys;
+    made.addresses_count = AddressCount::words;
+    return made;
+}();
+
 const Dialect twincat = [] {
     Dialect made = codesys;
-    made.addresses_count_sizes = false;
+    made.addresses_count = AddressCount::bytes;
     return made;
 }();
 
@@ -94,6 +100,19 @@ static bool is_of_matiec(std::string_view text) {
     return named.starts_with("RESOURCE ") && named.rfind(' ') == named.find(' ');
 }
 
+/// `%IX0.12`
+static bool has_bit_of_word(std::string_view text) {
+    for (std::size_t at = text.find('%'); at != text.npos; at = text.find('%', at + 1)) {
+        const std::size_t end = text.find_first_not_of("IQMXiqmx.0123456789", at + 1);
+        const std::string_view address = text.substr(at, end - at);
+        const auto bit = read_address(address, AddressCount::words);
+        if (bit && bit->bits == 1 && address.find('.') != address.npos &&
+            !read_address(address, AddressCount::sizes))
+            return true;
+    }
+    return false;
+}
+
 const Dialect& dialect_of(std::string_view path, std::string_view text) {
     struct Ending {
         std::string_view ending;
@@ -117,7 +136,8 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
     if (it == std::end(endings)) return scl;
-    return &it->dialect == &iec && is_of_matiec(text) ? matiec : it->dialect;
+    if (&it->dialect == &iec && is_of_matiec(text)) return matiec;
+    return &it->dialect == &codesys && has_bit_of_word(text) ? word_addressed : it->dialect;
 }
 
 }  // namespace lineshaft::st

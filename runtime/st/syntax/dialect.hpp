@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "runtime/model/address.hpp"
+
 namespace lineshaft::st {
 
 /// Whose blocks of the standard differ from it.
@@ -32,12 +34,12 @@ struct Dialect {
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
-    bool references_take_addresses = false;     ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
-    Vendor vendor = Vendor::none;               ///< whose instances begin as find_beginning says
-    bool peripheries_are_image = false;         ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
-    bool dint_is_time = false;                  ///< a DINT is a TIME in ms, and the other way
-    bool texts_have_any_length = false;         ///< STRING[0], and a reference to it is one to any
-    bool addresses_count_sizes = false;         ///< `%MW1` is the second word, else at byte 1
+    bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
+    Vendor vendor = Vendor::none;            ///< whose instances begin as find_beginning says
+    bool peripheries_are_image = false;      ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
+    bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
+    bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
+    AddressCount addresses_count = AddressCount::bytes;
     bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC
     bool reals_are_rounded = false;             ///< REAL_TO_STRING(12.0) is '12.0', else '12'
     std::uint8_t most_aligned = 1;              ///< bytes that a member of a structure begins at
@@ -56,11 +58,13 @@ struct Dialect {
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
 /// SCL of Siemens' TIA Portal. `matiec` is what Beremiz and OpenPLC compile, in PLCopen XML and in
 /// text: as loose as CODESYS, with the standard's blocks and texts.
-extern const Dialect iec, automation_studio, codesys, twincat, scl, matiec;
+/// `word_addressed` is CODESYS for devices whose bits are those of words, as WAGO's.
+extern const Dialect iec, automation_studio, codesys, word_addressed, twincat, scl, matiec;
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
 /// `.prg` puts together are B&R's, `.EXP` and `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, all
-/// others SCL. A text in `.st` that has `RESOURCE x ON PLC`, as those tools write it, is MatIEC's.
+/// others SCL. A text in `.st` that has `RESOURCE x ON PLC`, as those tools write it, is MatIEC's;
+/// one in `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.
 const Dialect& dialect_of(std::string_view path, std::string_view text = {});
 
 }  // namespace lineshaft::st

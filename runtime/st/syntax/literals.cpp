@@ -233,7 +233,7 @@ std::optional<ImageAddress> read_classic_address(std::string_view text) {
     std::string full = "%" + std::string(text);
     const char area = upper(text.front());
     full[1] = area == 'E' ? 'I' : area == 'A' ? 'Q' : area;
-    return read_address(full);
+    return read_address(full, AddressCount::bytes);
 }
 
 std::string to_string(Wide value) {

@@ -1,5 +1,7 @@
 #include "runtime/st/syntax/mistakes.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "runtime/st/syntax/grammar.hpp"
@@ -131,13 +133,51 @@ void refuse_assignment(Parsing& p) {
     parse_expression(p);
 }
 
-bool refuse_rung(Parsing& p) {
-    if (!p.says("rung") || !(p.is_name(1) || p.next().word == Word::prefix)) return false;
-    fail(p, code::not_supported, p.here().place, "networks in LAD and FBD are not supported",
-         "convert the network to SCL");
+namespace {
+
+/// `LD a`, `CAL timer(IN := a)`
+bool at_instruction(const Parsing& p) {
+    const bool is_first = p.says("ld") || p.says("ldn") || p.says("cal");
+    const Word next = p.next().word;
+    const bool is_operand = p.is_name(1) || next == Word::direct || next == Word::integer;
+    return is_first && p.here().first_in_line && is_operand && !p.next().first_in_line;
+}
+
+/// `_LD_BODY`, as CoDeSys 2.3 exports a body that is drawn: `LD`. Empty: it is none.
+std::string_view drawn_in(const Parsing& p) {
+    constexpr std::string_view words[] = {"_ld_body", "_fbd_body", "_cfc_body"};
+    constexpr std::string_view languages[] = {"LD", "FBD", "CFC"};
+    const auto* it = std::ranges::find_if(words, [&](auto word) { return p.says(word); });
+    return it == std::end(words) ? std::string_view() : languages[it - std::begin(words)];
+}
+
+void skip_body(Parsing& p) {
     while (!p.is(Word::end_network_) && !is_end(p.here().word) && !p.is(Word::end_of_file))
         p.take();
     p.panic = false;
+}
+
+}  // namespace
+
+bool refuse_other_language(Parsing& p) {
+    const bool is_rung = p.says("rung") && (p.is_name(1) || p.next().word == Word::prefix);
+    const std::string_view language = drawn_in(p);
+    if (is_rung)
+        fail(p, code::not_supported, p.here().place, "networks in LAD and FBD are not supported",
+             "convert the network to SCL");
+    else if (!language.empty())
+        fail(p, code::not_supported, p.here().place,
+             fmt::format("this body is drawn in {}, which is not read from a text", language),
+             "export the project as PLCopen XML from CODESYS 3, where it is read, or write the "
+             "body in Structured Text");
+    else if (at_instruction(p))
+        fail(p, code::not_supported, p.here().place,
+             "this body is an instruction list, which is not read from a text",
+             "export the project as PLCopen XML, where it is read, or write the body in "
+             "Structured Text");
+    else
+        return false;
+    skip_body(p);
     return true;
 }
 

@@ -38,8 +38,9 @@ void refuse_reserved_name(Parsing& p);
 void refuse_comparison(Parsing& p);
 /// In a condition `x := 1` is meant as a comparison.
 void refuse_assignment(Parsing& p);
-/// `RUNG ... END_RUNG` of a network in LAD or FBD. False: it is none.
-bool refuse_rung(Parsing& p);
+/// `RUNG ... END_RUNG` of a network in LAD or FBD, an instruction list, a body that CoDeSys 2.3
+/// exports as it is drawn. False: it is none.
+bool refuse_other_language(Parsing& p);
 /// A value that is no call, a label, JMP.
 void refuse_value(Parsing& p, const Expression& value);
 /// `t(IN := x; PT := y)`: takes the ';'. False: it is none.

@@ -334,7 +334,7 @@ struct Tree {
         scopes;                     ///< those within others behind them
     std::deque<std::string> names;  ///< that no source has as they are
 
-    std::vector<ImageAddress> addresses;  ///< that the program's file names beside the sources'
+    std::vector<std::string> addresses;  ///< that the program's file names beside the sources'
 
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods

@@ -187,6 +187,7 @@ struct Variable {
     const Pou* of = nullptr;  ///< null: a member of a structure, or of the catalogue
     Access access = Access::unsaid;
     bool used = false;
+    bool is_set = false;                 ///< of one in the image: sources write it
     const Variable* bound_of = nullptr;  ///< ARRAY[*] whose lower or upper bound this is
     const std::vector<Argument>* constructed = nullptr;  ///< arguments of FB_init
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
@@ -308,8 +309,10 @@ struct Image {
 
     int global = -1;  ///< none: no source names an address
     std::vector<Variable*> variables = {};
-    bool sizes_are_apart = false;      ///< as the dialect of the first source that names one has it
-    std::uint32_t begins[parts] = {};  ///< [bytes]
+    bool sizes_are_apart = false;  ///< as the dialect of the first source that names one has it
+    AddressCount count = AddressCount::bytes;  ///< as a program's file, and traces, write addresses
+    std::vector<ImageAddress> named = {};      ///< by a program's file
+    std::uint32_t begins[parts] = {};          ///< [bytes]
     std::uint32_t bytes = 0;
 
     /// Of its bytes, from the first on.

@@ -19,6 +19,9 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
     CHECK(written("RESOURCE Cpu ON Controller // ON PLC") == &st::iec);
     CHECK(written("RESOURCE Cpu ON Controller\n// it runs ON PLC") == &st::iec);
     for (const char* path : {"plc.EXP", "plc.xml"}) CHECK(&st::dialect_of(path) == &st::codesys);
+    CHECK(&st::dialect_of("plc.EXP", "lamp AT %QX0.12 : BOOL;") == &st::word_addressed);
+    CHECK(&st::dialect_of("plc.EXP", "%QX0.7 %QW0 %IX10.3 'of 10% X0.12'") == &st::codesys);
+    CHECK(&st::dialect_of("plc.st", "lamp AT %QX0.12 : BOOL;") == &st::iec);
     for (const char* path : {"MAIN.TcPOU", "GVL.TcGVL", "T.TcDUT", "I.TcIO"})
         CHECK(&st::dialect_of(path) == &st::twincat);
 }

@@ -1,0 +1,78 @@
+#include <set>
+
+#include "runtime/projects/drawings/networks.hpp"
+#include "runtime/st/syntax/token.hpp"
+
+namespace lineshaft::projects {
+
+namespace {
+
+constexpr std::size_t most_typed = 200;  // elements that are looked at for one type
+
+bool is_known(const std::string& type) {
+    return !type.empty() && type != "#";
+}
+
+}  // namespace
+
+std::vector<std::string> NetworkText::types_of_arguments(std::size_t i,
+                                                         std::set<std::size_t>& seen) const {
+    std::vector<std::string> types;
+    for (const Pin& pin : drawing_.elements[i].inputs) {
+        if (st::same_name(pin.name, "EN") || (pin.lines.empty() && !pin.expression)) continue;
+        const std::string type = pin.lines.empty()
+                                     ? context_.types.of_expression(file_.plain(pin.expression))
+                                     : type_of(pin.lines.front(), seen);
+        types.push_back(type.empty() ? "#" : type);
+    }
+    return types;
+}
+
+/// While its arguments are not evaluated yet. `seen` keeps lines that go around from doing so
+/// without end.
+std::string NetworkText::type_of_result(std::size_t i, std::set<std::size_t>& seen) const {
+    if (!seen.insert(i).second || seen.size() > most_typed) return {};
+    return context_.types.of_call(type_name_of(drawing_.elements[i]), types_of_arguments(i, seen));
+}
+
+std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) const {
+    const Element& from = drawing_.elements[line.from];
+    if (from.kind == Drawn::contact || from.kind == Drawn::left_rail) return "BOOL";
+    if (from.kind != Drawn::block)
+        return context_.types.of_expression(file_.plain(from.node.child("expression")));
+    const std::string instance = attribute(from, "instanceName");
+    return instance.empty() ? type_of_result(line.from, seen)
+                            : context_.types.of_output(instance, line.pin);
+}
+
+/// Of the variables that a result goes to, else of what it is reckoned with.
+std::string NetworkText::type_of_takers(std::size_t i) const {
+    std::set<std::size_t> seen;
+    for (const bool are_variables : {true, false})
+        for (const Use& use : states_[i].uses) {
+            const bool is_variable = drawing_.elements[use.by].kind == Drawn::out_variable;
+            if (use.pin == "eno" || is_variable != are_variables) continue;
+            std::string type = type_of_taker(i, use.by, seen);
+            if (is_known(type)) return type;
+        }
+    return {};
+}
+
+/// An operator takes what its other arguments are, or what its result goes to.
+std::string NetworkText::type_of_taker(std::size_t i, std::size_t by,
+                                       std::set<std::size_t>& seen) const {
+    const Element& to = drawing_.elements[by];
+    if (to.kind == Drawn::out_variable)
+        return context_.types.of_expression(file_.plain(to.node.child("expression")));
+    if (to.kind != Drawn::block || !attribute(to, "instanceName").empty() || !is_operator(to))
+        return {};
+    if (seen.size() > most_typed || !seen.insert(by).second) return {};
+    std::set<std::size_t> without{i};
+    std::string type = context_.types.of_call("add", types_of_arguments(by, without));
+    if (is_known(type) || compares(type_name_of(to))) return type;
+    for (const Use& use : states_[by].uses)
+        if (use.pin != "eno" && !is_known(type)) type = type_of_taker(by, use.by, seen);
+    return type;
+}
+
+}  // namespace lineshaft::projects
