@@ -55,7 +55,7 @@ Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 }
 
 /// As a whole number a TIME and a TOD are in ms, as IEC 61131-3's vendors have it, a DT and a DATE
-/// in s, the long ones in ns; in days since 1990 a DATE in 16 bits is, as Siemens has it.
+/// in s, the long ones in ns; in days since 1990 a DATE of Siemens is, and one in 16 bits.
 Slot convert_counted(Writing& w, Slot slot, const Type& from, const Type& to, bool in_days,
                      Slot wanted) {
     const Type& time = from.is_time() ? from : to;
@@ -90,6 +90,23 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     }
     const bool in_days = time.kind == Kind::date && number.bits == 16;
     return number.bits == 64 ? slot : convert_counted(w, slot, from, to, in_days, wanted);
+}
+
+/// Written in SCL, and not for the prelude's own use.
+bool is_of_s7(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
+}
+
+bool is_whole_number(const Type& type) {
+    return (type.is_integer() || type.is_bits()) && !type.is_character;
+}
+
+/// Of a DATE and a whole number of any width in SCL.
+bool counts_days(const Expression& e) {
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    return is_of_s7(e) && from.is_time() != to.is_time() && time.kind == Kind::date &&
+           is_whole_number(number);
 }
 
 /// Of a TIME, a TOD, a DT or a DATE and 64 bits, of CODESYS also 16, which are no days there; the
@@ -161,15 +178,6 @@ Slot convert_wide(Writing& w, Slot slot, const Type& to, Slot wanted) {
     return to.bits == 64 ? slot : w.emit(of_type(Op::wrap_sint, to.plain()), wanted, slot);
 }
 
-/// Written in SCL, and not for the prelude's own use.
-static bool is_of_s7(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
-}
-
-static bool is_whole_number(const Type& type) {
-    return (type.is_integer() || type.is_bits()) && !type.is_character;
-}
-
 static Slot s7_integer_of(Writing& w, Slot text, const Type& type, Slot wanted) {
     const Slot to = w.result(wanted);
     w.put(Op::s7_integer_of_text, to, text, static_cast<Slot>(type.bits), type.is_signed);
@@ -216,9 +224,10 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         (e.type->is_number() || e.type->is_bits()))
         return convert_wide(w, wide_value(w, operand), *e.type, wanted);
     if (is_whole(e)) return whole_time(w, e, value(w, operand), wanted);
-    if (is_counted(e))
-        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(), false,
-                               wanted);
+    const bool in_days = counts_days(e);
+    if (in_days || is_counted(e))
+        return convert_counted(w, value(w, operand), operand.type->plain(), e.type->plain(),
+                               in_days, wanted);
     Slot from = value(w, operand);
     if (e.type->kind == Kind::boolean && is_of_s7(e) && is_whole_number(*operand.type))
         return w.emit(Op::and_bits, wanted, from, w.constant_slot(1));
