@@ -9,8 +9,10 @@ namespace lineshaft::st {
 
 namespace {
 
+/// Also of an ARRAY[*], which is where a pointer is.
 bool is_element(const Expression& e) {
-    return e.kind == E::index && !e.is_character();
+    const bool is_of_open = e.kind == E::deref && e.operands[0]->type->is_open_array();
+    return is_of_open || (e.kind == E::index && !e.is_character());
 }
 
 /// A counter that nobody can name.
@@ -40,6 +42,34 @@ Statement* fill(Checking& c, const Statement& s, Expression* value, Expression* 
     return loop;
 }
 
+/// Of a structure all of whose members are of one elementary type.
+bool is_alike(const Expression& e) {
+    if (e.kind != E::member || !e.variable) return false;
+    const Type* of = e.operands[0]->type;
+    return of && of->kind == Kind::structure &&
+           std::ranges::all_of(of->members, [&](const Variable* member) {
+               return member->type && member->type->is_scalar() &&
+                      same_type(*member->type, *e.type);
+           });
+}
+
+/// `moved := count; IF moved > 0 THEN of.first := value; END_IF; IF moved > 1 THEN ...`
+Statement* fill_members(Checking& c, const Statement& s, Expression* value, Expression* count,
+                        Expression* first) {
+    Variable& left = counter(c);
+    Block made{make_assignment(c, s.place, make_use(c, *first, left), count)};
+    const auto& members = first->operands[0]->type->members;
+    auto member = std::ranges::find(members, first->variable);
+    for (Wide number = 0; member != members.end(); ++member, ++number) {
+        Expression* is_due =
+            make_binary(c, s.place, s.place, Word::greater, make_use(c, *first, left),
+                        make_constant(c, *first, lint_type, {.integer = number}));
+        Expression* to = make_member(c, first->operands[0], (*member)->text);
+        made.push_back(make_if(c, s.place, is_due, {make_assignment(c, s.place, to, value)}, {}));
+    }
+    return make_sequence(c, s.place, std::move(made));
+}
+
 /// `MEMCPY(ADR(to), ADR(from), count * size)`
 Statement* move(Checking& c, const Expression& like, Expression* from, Expression* count,
                 Expression* to) {
@@ -59,16 +89,22 @@ void rewrite_block_move(Checking& c, Statement*& s) {
                *to = call.arguments[2].value;
     const bool fills = call.standard->name.find("FILL") != std::string_view::npos;
     if (!check(c, to) || !check(c, value, to->type) || !check(c, count)) return;
-    if (!is_element(*to) || (!fills && !(is_element(*value) && same_type(*value->type, *to->type))))
+    const bool fills_members = fills && is_alike(*to);
+    if (!(is_element(*to) || fills_members) ||
+        (!fills && !(is_element(*value) && same_type(*value->type, *to->type))))
         return (void)c.fail(code::type_does_not_fit, s->place,
                             fmt::format("{} does not go with {} and {}", call.standard->name,
                                         describe(*value->type), describe(*to->type)),
-                            fills ? "OUT is the first element of an array that is filled"
+                            fills ? "OUT is the first element that is filled, of an array, or of "
+                                    "a structure of one type"
                                   : "IN and OUT are elements of arrays of one type: a[0]");
     if (!count->type->is_integer() && !count->type->is_bits())
         return (void)c.fail(code::type_does_not_fit, count->place, "COUNT is a whole number");
+    if (fills_members && !coerce(c, value, *to->type)) return;
     become_lint(c, count);
-    s = fills ? fill(c, *s, value, count, to) : move(c, call, value, count, to);
+    s = fills_members ? fill_members(c, *s, value, count, to)
+        : fills       ? fill(c, *s, value, count, to)
+                      : move(c, call, value, count, to);
     check(c, s);
 }
 

@@ -277,7 +277,8 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     Expression& call = *e;
     std::size_t position = 0;
     std::vector<const Variable*> given;
-    bool by_name = call.arguments.empty();  // 6.6.1.4.2
+    const bool is_method_of_ax = routine.owner && &call.place.dialect() == &iec;
+    bool by_name = call.arguments.empty() || is_method_of_ax;  // 6.6.1.4.2
     for (Argument& argument : call.arguments) {
         by_name |= argument.is_named();
         Variable* parameter = find_parameter(c, argument, routine, position++);

@@ -237,6 +237,12 @@ std::string_view namespace_of(const Routine& block) {
     return std::string_view(block.name).substr(0, point == std::string::npos ? 0 : point);
 }
 
+/// The namespace itself, or one in it.
+bool is_within_namespace(std::string_view path, std::string_view outer) {
+    return same_name(path.substr(0, outer.size()), outer) &&
+           (path.size() == outer.size() || path[outer.size()] == '.');
+}
+
 }  // namespace
 
 void resolve_bases(Checking& c) {
@@ -304,8 +310,9 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
     if (access == Access::protected_ && !(own && is_a(*own, owner)))
         return refuse("PROTECTED", "only its own block and those that extend it name it");
     const Routine* user = own ? own : c.routine;
-    const bool elsewhere = !user || namespace_of(*user) != namespace_of(owner);
-    if (access == Access::internal_ && elsewhere && !namespace_of(owner).empty())
+    const std::string_view space = namespace_of(owner);
+    const bool is_within = user && is_within_namespace(namespace_of(*user), space);
+    if (access == Access::internal_ && !is_within && !space.empty())
         return refuse("INTERNAL", "only its own namespace names it");
     return true;
 }

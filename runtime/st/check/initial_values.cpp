@@ -200,8 +200,13 @@ void check_initial_values(Checking& c) {
         if (!variable.initial || !variable.type || variable.space == Space::constant) return;
         check_initial(c, variable);
     };
-    for (Variable& variable : c.checked.variables)
-        if (is_member(variable)) check_one(variable);
+    for (Variable& variable : c.checked.variables) {
+        if (!is_member(variable)) continue;
+        const auto routine = c.routines_of_members.find(&variable);
+        c.routine = routine == c.routines_of_members.end() ? nullptr : routine->second;
+        check_one(variable);
+    }
+    c.routine = nullptr;
     for (Variable& variable : c.checked.variables) {
         begin_members(c, variable);
         if (!is_member(variable)) check_one(variable);
@@ -232,9 +237,10 @@ void check_initial(Checking& c, Variable& variable) {
     Expression& written = *variable.initial;
     if (!written.initial) {
         Expression* value = &written;
+        const bool is_of_type = !c.routine || c.routines_of_members.contains(&variable);
         const bool begins = variable.space == Space::global || (c.routine && variable.of);
         const Checking::Beginning own{.variable = begins ? &variable : nullptr,
-                                      .member = begins || c.routine ? nullptr : &variable,
+                                      .member = begins || !is_of_type ? nullptr : &variable,
                                       .is_constructed = begins && is_constructed(c, variable.type)};
         Checking::Beginning outer = std::exchange(c.beginning, own);
         check_initial(c, value, *variable.type);

@@ -11,6 +11,9 @@ namespace {
 std::optional<int> closeness(const Type& from, const Type& to) {
     constexpr int same = 8, alike = 6, usual = 5, possible = 3;
     if (same_type(from, to)) return same;
+    if (&from == &null_type)
+        return to.is_reference() || to.kind == Kind::interface ? std::optional(possible)
+                                                               : std::nullopt;
     if (from.kind == Kind::text && to.kind == Kind::text) return alike;
     if (from.kind == Kind::array && to.is_open_array()) {
         const Type* element = &from;

@@ -390,6 +390,7 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
         e = make_converted(c, e, to);
         return true;
     }
+    if (to.kind == Kind::interface && &from == &null_type) return become(c, e, to, {});
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
     const bool is_this = to.is_pointer() && e->kind == E::self;
     if (to.is_alias() || is_this) return bind(c, e, to);

@@ -29,7 +29,8 @@ const Type* use_edge(Checking& c, Expression*& e, Variable& input);
 // block_moves.cpp
 
 /// MOVE_BLK, UMOVE_BLK, FILL_BLK and UFILL_BLK of Siemens as what they do with the elements of two
-/// arrays; beyond an array is a fault. Its arguments are in their order.
+/// arrays, or to fill with the members of a structure; beyond an array is a fault. Its arguments
+/// are in their order.
 void rewrite_block_move(Checking& c, Statement*& s);
 
 /// MOVE_BLK_VARIANT as MOVE_BLK between elements of two arrays; it gives 0. False: it is another

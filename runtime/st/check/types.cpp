@@ -111,8 +111,9 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
         refuse_overlay(c, *declared);
         refuse_object(c, *declared, member);
         if (is_told_by_capitals(c, declared->name, names)) continue;
-        if (is_new_name(c, declared->name, names))
-            type.members.push_back(add(c, c.checked.variables, *declared, member));
+        if (!is_new_name(c, declared->name, names)) continue;
+        type.members.push_back(add(c, c.checked.variables, *declared, member));
+        if (c.routine) c.routines_of_members.emplace(type.members.back(), c.routine);
     }
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }

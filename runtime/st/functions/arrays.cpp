@@ -15,7 +15,7 @@ constexpr StandardFunction arrays[] = {
     {"MOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "copies COUNT elements from IN on, of an array, to those from OUT on",
      Typing::statement, nullptr},
     {"UMOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as MOVE_BLK", Typing::statement, nullptr},
-    {"FILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "writes IN to COUNT elements of an array, from OUT on",
+    {"FILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "writes IN to COUNT elements of an array, or members of a structure, from OUT on",
      Typing::statement, nullptr},
     {"UFILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as FILL_BLK", Typing::statement, nullptr},
     {"DEMUX(K: ANY_INT; IN: ANY; OUT0, ...: ANY)", "writes IN to the output of number K, from 0 on, or to OUTELSE if there is none",

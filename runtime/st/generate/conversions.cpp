@@ -111,6 +111,23 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
                    : convert_counted(w, slot, to, of_seconds, wanted);
 }
 
+/// Written in SCL, and not for the prelude's own use.
+bool is_of_s7(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
+}
+
+bool is_whole_number(const Type& type) {
+    return (type.is_integer() || type.is_bits()) && !type.is_character;
+}
+
+/// Of a DATE and a whole number of any width in SCL.
+bool counts_days(const Expression& e) {
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
+    return is_of_s7(e) && from.is_time() != to.is_time() && time.kind == Kind::date &&
+           is_whole_number(number);
+}
+
 /// Of a TIME, a TOD, a DT or a DATE and 64 bits, of CODESYS also 16, which are no days there; the
 /// prelude reckons in ns.
 bool is_counted(const Expression& e) {
@@ -180,15 +197,6 @@ Slot convert_wide(Writing& w, Slot slot, const Type& to, Slot wanted) {
     return to.bits == 64 ? slot : w.emit(of_type(Op::wrap_sint, to.plain()), wanted, slot);
 }
 
-/// Written in SCL, and not for the prelude's own use.
-static bool is_of_s7(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
-}
-
-static bool is_whole_number(const Type& type) {
-    return (type.is_integer() || type.is_bits()) && !type.is_character;
-}
-
 static Slot s7_integer_of(Writing& w, Slot text, const Type& type, Slot wanted) {
     const Slot to = w.result(wanted);
     w.put(Op::s7_integer_of_text, to, text, static_cast<Slot>(type.bits), type.is_signed);
@@ -237,9 +245,10 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (is_whole(e)) return whole_time(w, e, value(w, operand), wanted);
     const Type &given = operand.type->plain(), &to = e.type->plain();
     if (is_of_matiec(e)) return convert_seconds(w, value(w, operand), given, to, wanted);
-    if (is_counted(e))
-        return convert_counted(w, value(w, operand), to, unit_of(given.is_time() ? given : to),
-                               wanted);
+    const bool in_days = counts_days(e);
+    if (in_days || is_counted(e))
+        return convert_counted(w, value(w, operand), to,
+                               in_days ? of_days : unit_of(given.is_time() ? given : to), wanted);
     Slot from = value(w, operand);
     if (e.type->kind == Kind::boolean && is_of_s7(e) && is_whole_number(*operand.type))
         return w.emit(Op::and_bits, wanted, from, w.constant_slot(1));

@@ -44,7 +44,7 @@ void jump_unless(Writing& w, const Expression& condition, Jumps& to) {
         return w.jump(Op::jump_if, 0, value(w, *e.operands[0]), to);
     const bool compares = binary && e.op >= Word::less && e.op <= Word::unequal &&
                           e.operands[0]->type->kind != Kind::text &&
-                          !e.operands[0]->type->is_reference();
+                          !e.operands[0]->type->is_reference() && !is_false_of_nan(e);
     if (!compares) return w.jump(Op::jump_unless, 0, value(w, e), to);
     const Type& type = *e.operands[0]->type;
     Slot a = value_before(w, *e.operands[0], *e.operands[1]), b = value(w, *e.operands[1]);

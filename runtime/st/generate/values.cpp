@@ -92,7 +92,9 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         return compare_texts(w, e.op, a, b, wanted);
     }
     const Slot a = wide_value_before(w, left, right), b = wide_value(w, right);
-    return compare(w, e.op, *left.type, a, b, wanted);
+    if (!is_false_of_nan(e)) return compare(w, e.op, *left.type, a, b, wanted);
+    const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);
+    return w.emit(Op::or_bits, wanted, below, above);
 }
 
 /// AND_THEN, OR_ELSE. Not into a variable, which the right side may read.
@@ -190,6 +192,11 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
 }
 
 }  // namespace
+
+bool is_false_of_nan(const Expression& e) {
+    return e.op == Word::unequal && e.operands[0]->type->is_real() &&
+           e.place.dialect().vendor == Vendor::siemens;
+}
 
 Op comparison_op(Word relation, const Type& type) {
     const auto pick = [&](Op real, Op of_unsigned, Op other) {

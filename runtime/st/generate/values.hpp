@@ -26,6 +26,8 @@ Op comparison_op(Word relation, const Type& type);
 constexpr bool is_exchanged(Word relation) {
     return relation == Word::greater || relation == Word::greater_or_equal;
 }
+/// `<>` of REALs in SCL, where it is FALSE, too, of what is no number.
+bool is_false_of_nan(const Expression& e);
 /// Whether a relation of two values holds.
 Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted = none);
 

@@ -255,6 +255,8 @@ class Lexer {
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
         if (c == '%' && is_direct()) return read_direct();
+        const bool is_of_ax = at("&&") && &tokens_.source->dialect == &iec;
+        if (is_of_ax) return at_ += 2, void(add(Word::ampersand));
         for (const Sign& sign : signs()) {
             if (!at(sign.text)) continue;
             at_ += sign.text.size();

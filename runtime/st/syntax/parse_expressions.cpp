@@ -160,7 +160,7 @@ Expression* parse_unary(Parsing& p) {
 }
 
 /// Xor_Expr : And_Expr ( 'XOR' And_Expr ) *
-/// And_Expr : Compare_Expr ( ( 'AND' | '&' | 'AND_THEN' ) Compare_Expr ) *
+/// And_Expr : Compare_Expr ( ( 'AND' | '&' | '&&' | 'AND_THEN' ) Compare_Expr ) *
 /// Compare_Expr : Equ_Expr ( ( '=' | '<>' ) Equ_Expr ) *
 /// Equ_Expr : Add_Expr ( ( '<' | '>' | '<=' | '>=' ) Add_Expr ) *
 /// Add_Expr : Term ( ( '+' | '-' ) Term ) *

@@ -124,11 +124,13 @@ void parse_action_beside(Parsing& p) {
         p.tree.units.push_back(parse_action(p, PouKind::function));
 }
 
-/// POU_Body : Stmt_List ( ( POU | Prop_Decl | Action_Decl | Chart_Element ) Stmt_List ) *
+/// POU_Body : Stmt_List ( POU_Part Stmt_List ) *
+/// POU_Part : POU | Prop_Decl | Action_Decl | Chart_Element | Var_Section
 /// It is a METHOD, and only in a FUNCTION_BLOCK, a CLASS, an INTERFACE or a PROGRAM; so are the
-/// others.
+/// others. Variables stand behind methods of a CLASS alone, as SIMATIC AX has it.
 void parse_body(Parsing& p, Pou& pou, Word end) {
     for (;;) {
+        if (pou.is_class && !pou.methods.empty()) parse_sections(p, pou, end);
         parse_statements(p, pou.body, end);
         if (!may_have_parts(pou)) return p.at_chart() ? refuse_chart(p) : void();
         if (p.at_method() && p.is(Word::property_))
