@@ -310,9 +310,9 @@ bool is_accessible(Checking& c, Access access, const Routine& owner, const Token
     if (access == Access::protected_ && !(own && is_a(*own, owner)))
         return refuse("PROTECTED", "only its own block and those that extend it name it");
     const Routine* user = own ? own : c.routine;
-    const std::string_view space = namespace_of(owner);
-    const bool is_within = user && is_within_namespace(namespace_of(*user), space);
-    if (access == Access::internal_ && !is_within && !space.empty())
+    const std::string_view inside = namespace_of(owner);
+    const bool is_within = user && is_within_namespace(namespace_of(*user), inside);
+    if (access == Access::internal_ && !is_within && !inside.empty())
         return refuse("INTERNAL", "only its own namespace names it");
     return true;
 }
