@@ -183,11 +183,23 @@ Fault run_whole(Frames& frames) {
     return fault == Fault::none ? fault : run_caught<counts, steps>(frames, fault);
 }
 
-[[gnu::always_inline]] inline Fault run_native(Frames& frames) {
+[[gnu::always_inline]] inline Fault run_native(Frames& frames, std::byte* base) {
     const Code& code = frames.code;
-    const Fault fault =
-        code.native->scan_of(code, frames.scanned)(frames.place(frames.base), frames, frames.fuel);
+    const Fault fault = code.native->scan_of(code, frames.scanned)(base, frames, frames.fuel);
     return fault == Fault::none ? fault : run_caught<false, false>(frames, fault);
+}
+
+[[gnu::always_inline]] inline Frames frames_at(const Code& code, const CodeRoutine& routine,
+                                               std::byte* instance, const Scan& now,
+                                               const Context& context, std::int64_t fuel) {
+    return {code,
+            routine,
+            now,
+            context,
+            fuel,
+            instance,
+            instance + 8 * std::size_t{code.calls_slot()},
+            instance + 8 * std::size_t{routine.pile}};
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.
@@ -196,7 +208,7 @@ Fault run_whole(Frames& frames) {
     Probe* const probe = frames.code.probe;
     std::byte* const instance = frames.root;
     const bool steps = probe && probe->steps(frames.scanned, frames.now);
-    if (frames.code.native && !steps) return run_native(frames);
+    if (frames.code.native && !steps) return run_native(frames, frames.place(frames.base));
     if (!times && !steps) return run_whole<false, false>(frames);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
@@ -216,12 +228,17 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
 }
 
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
-              const Context& context, std::int64_t fuel, std::uint64_t frame) {
-    Frames frames(code, routine, now, context, fuel, instance,
-                  instance + 8 * std::size_t{code.calls_slot()},
-                  instance + 8 * std::size_t{routine.pile});
+              const Context& context, std::int64_t fuel) {
+    Frames frames = frames_at(code, routine, instance, now, context, fuel);
+    if (code.native && !code.probe) return run_native(frames, instance);
+    return run_otherwise(frames);
+}
+
+Fault execute_part(const Code& code, const CodeRoutine& routine, std::byte* copy,
+                   std::uint64_t frame, const Scan& now, const Context& context,
+                   std::int64_t fuel) {
+    Frames frames = frames_at(code, routine, copy, now, context, fuel);
     frames.base = frame;
-    if (code.native && !code.probe) return run_native(frames);
     return run_otherwise(frames);
 }
 

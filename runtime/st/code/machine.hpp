@@ -51,9 +51,12 @@ inline std::byte* place_of(std::uint64_t address, std::byte* root, const Context
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With
 /// Code::times the header has how many of each class were executed and what they took.
 /// Where Code::probe wants to step the scan, it is interpreted.
-/// The routine runs on the frame at that address: that of the instance, which has the calls; or
-/// of one that is a part of another, of which `instance` is then a copy for the calls alone.
 Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
-              const Context& context, std::int64_t fuel, std::uint64_t frame = 0);
+              const Context& context, std::int64_t fuel);
+
+/// The same on the frame at an address: 0, or that of an instance that is a part of another one,
+/// whose copy has room for the calls, and gets the header.
+Fault execute_part(const Code& code, const CodeRoutine& routine, std::byte* copy,
+                   std::uint64_t frame, const Scan& now, const Context& context, std::int64_t fuel);
 
 }  // namespace lineshaft::st

@@ -128,7 +128,7 @@ TestResult Bench::run_on(const CodeRoutine& routine, std::byte* instance, std::u
     for (std::uint64_t i = 0; i < made_.checked.globals.size() && !places_.empty(); ++i)
         std::memcpy(instance + 8 * (globals_slot + i), &i, sizeof i);
     code.witness = this;
-    const Fault fault = execute(code, routine, instance, now_, context_, options_.fuel, frame);
+    const Fault fault = execute_part(code, routine, instance, frame, now_, context_, options_.fuel);
     code.witness = nullptr;
     if (fault == Fault::none) return {};
     if (fault == Fault::assertion) return std::move(ended_);
