@@ -4,12 +4,16 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
 
 namespace {
+
+constexpr int deepest_boxes = 400;
+constexpr std::size_t longest_taken = 1U << 16;
 
 bool is(const BoxCall& box, std::string_view name) {
     return st::same_name(box.type, name);
@@ -70,6 +74,23 @@ Excerpts arguments_of(const BoxCall& box,
     }
     made.write(")", box.place);
     return made;
+}
+
+bool is_too_deep(int depth, const Mark& place, Diagnostics& out) {
+    if (depth < deepest_boxes) return false;
+    out.add(code::too_deep_or_large, place,
+            fmt::format("more than {} elements stand one behind the other", deepest_boxes),
+            "put a variable between");
+    return true;
+}
+
+Value within_length(Value value, const Mark& place, Diagnostics& out) {
+    if (value.text.text().size() <= longest_taken) return value;
+    out.add(
+        code::too_deep_or_large, place,
+        fmt::format("what this takes is longer than {} characters as an expression", longest_taken),
+        "put a variable between");
+    return words("FALSE", place, "BOOL");
 }
 
 Value result_of_operator(const BoxCall& box) {

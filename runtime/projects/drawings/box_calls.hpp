@@ -27,6 +27,11 @@ bool is_operator(std::string_view type);
 Excerpts arguments_of(const BoxCall& box,
                       const std::vector<std::pair<std::string, Excerpts>>& outputs = {});
 
+/// Whether so many elements stand behind one another that no more are read, which is told.
+bool is_too_deep(int depth, const Mark& place, Diagnostics& out);
+/// The value; FALSE, and told, where its text is too long.
+Value within_length(Value value, const Mark& place, Diagnostics& out);
+
 /// What an operator makes of its inputs. Empty: nothing leads to one of them.
 Value result_of_operator(const BoxCall& box);
 

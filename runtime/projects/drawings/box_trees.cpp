@@ -15,9 +15,6 @@ namespace lineshaft::projects {
 
 namespace {
 
-constexpr int deepest_tree = 400;
-constexpr std::size_t longest_text = 1U << 16;
-
 class BoxTrees {
   public:
     BoxTrees(const XmlFile& file, Diagnostics& out, MadeVariables& variables, bool is_kept,
@@ -116,22 +113,12 @@ class BoxTrees {
     Value value_of(pugi::xml_node tree) {
         if (Archive::is_null(tree)) return {};
         const Mark place = place_of(tree, "a line");
-        if (depth_ >= deepest_tree) {
-            out_.add(code::too_deep_or_large, place,
-                     fmt::format("more than {} elements stand one behind the other", deepest_tree),
-                     "put a variable between");
-            return words("FALSE", place, "BOOL");
-        }
+        if (is_too_deep(depth_, place, out_)) return words("FALSE", place, "BOOL");
         ++depth_;
         Value value = value_of_kind(tree, place);
         value = both(std::exchange(left_, {}), std::move(value), place);
         --depth_;
-        if (value.text.text().size() <= longest_text) return value;
-        out_.add(code::too_deep_or_large, place,
-                 fmt::format("what this takes is longer than {} characters as an expression",
-                             longest_text),
-                 "put a variable between");
-        return words("FALSE", place, "BOOL");
+        return within_length(std::move(value), place, out_);
     }
 
     Value value_of_kind(pugi::xml_node tree, const Mark& place) {

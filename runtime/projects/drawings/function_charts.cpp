@@ -17,9 +17,6 @@ namespace lineshaft::projects {
 
 namespace {
 
-constexpr int deepest_chart = 400;
-constexpr std::size_t longest_taken = 1U << 16;
-
 enum class Item : std::uint8_t {
     input,
     output,
@@ -113,8 +110,8 @@ class FunctionChart {
         item.text = archive_.text(Archive::member(node, "Text"), "Text");
         const std::string bounds = archive_.text(node, "Bounds");
         const char* const end = bounds.data() + bounds.size();
-        const auto x = std::from_chars(bounds.data(), end, item.x);
-        std::from_chars(std::min(x.ptr + 2, end), end, item.y);
+        const char* const behind_x = std::from_chars(bounds.data(), end, item.x).ptr;
+        if (end - behind_x > 2) std::from_chars(behind_x + 2, end, item.y);
         add_pins(item);
         items_.push_back(std::move(item));
     }
@@ -309,22 +306,12 @@ class FunctionChart {
         const auto source = source_of(pin);
         if (!source) return {};
         const Mark place = place_of(item);
-        if (depth_ >= deepest_chart) {
-            out_.add(code::too_deep_or_large, place,
-                     fmt::format("more than {} elements stand one behind the other", deepest_chart),
-                     "put a variable between");
-            return words("FALSE", place, "BOOL");
-        }
+        if (is_too_deep(depth_, place, out_)) return words("FALSE", place, "BOOL");
         ++depth_;
         Value value = value_of(*source);
         --depth_;
         if (pin.is_negated && !value.is_empty()) value = negated(value, place);
-        if (value.text.text().size() <= longest_taken) return value;
-        out_.add(code::too_deep_or_large, place,
-                 fmt::format("what this takes is longer than {} characters as an expression",
-                             longest_taken),
-                 "put a variable between");
-        return words("FALSE", place, "BOOL");
+        return within_length(std::move(value), place, out_);
     }
 
     Value value_of(const PinPlace& source) {
@@ -335,7 +322,8 @@ class FunctionChart {
         if (item.kind == Item::input)
             value = written(item);
         else if (item.kind == Item::selector)
-            value = member_of(value_of(item, item.inputs.front()), item, pin);
+            value = item.inputs.empty() ? Value{}
+                                        : member_of(value_of(item, item.inputs.front()), item, pin);
         else if (item.kind == Item::box || item.kind == Item::composer)
             value = value_of_box(item, pin);
         else

@@ -236,6 +236,15 @@ TEST_CASE("what of a chart is not read is told at its place") {
     CHECK(read(open.unit()).messages ==
           "nothing leads to an input of this box (box ADD at 10, 2)\n"
           "expected INT, found BOOL (box ADD at 10, 2)\n");
+    Chart selector;
+    selector.output(
+        "x",
+        selector
+            .box({.type = "Part", .inputs = {}, .outputs = {"n"}, .kind = "CFCSelectorElement"}, 10,
+                 2)
+            .out[0],
+        30, 2);
+    CHECK(read(selector.unit()).messages == "");
     Chart nothing;
     std::string xml = nothing.unit();
     xml.replace(xml.find("<XmlArchive>"), xml.find("</CFC>") - xml.find("<XmlArchive>"), "");
