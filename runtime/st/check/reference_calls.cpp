@@ -68,19 +68,17 @@ const Type* check_is_bound(Checking& c, Expression*& e) {
     if (!check(c, given)) return nullptr;
     if (given->kind == E::name && given->variable && is_constant_in_out(*given->variable))
         return become(c, e, bool_type, {.integer = 1});
-    if (given->type->kind == Kind::interface) {
-        e = make_binary(c, e->place, e->token.place, Word::unequal, given,
-                        make_constant(c, *given, null_type, {}));
-        return check(c, e);
-    }
     Expression* reference = without_alias(given);
     const bool is_own = given->kind == E::member && given->operands[0]->kind == E::self;
     const Variable* in_out = given->kind == E::name || is_own ? given->variable : nullptr;
-    if (in_out && in_out->space == Space::reference && !reference->type->is_reference()) {
+    const auto refers = [&] {
+        return reference->type->is_reference() || reference->type->kind == Kind::interface;
+    };
+    if (in_out && in_out->space == Space::reference && !refers()) {
         if (!refer(c, given, make_reference(c, Referring::ref, given->type))) return nullptr;
         reference = given;
     }
-    if (!reference->type->is_reference())
+    if (!refers())
         return c.fail(
             code::type_does_not_fit, given->place,
             fmt::format("__ISVALIDREF takes a reference, not {}", describe(*given->type)));
