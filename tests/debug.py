@@ -256,6 +256,37 @@ def test_watches_as_the_program_reckons():
     client.end()
 
 
+def test_axis_of_a_call():
+    """What an AXIS_REF is to has the values that the scan sees, in a condition, a text to log and a watch."""
+    path = folder / "axis.yaml"
+    path.write_text("lineshaft: 1\ntasks: {servo: {every: 1 ms, priority: 20}, main: {every: 10 ms}}\nsources: axis.st\n"
+                    "blocks: {x: {type: axis, task: servo}, job: {type: Job, task: main, axis: x}}\nrun: {for: 0.5 s}\n", encoding="utf-8")
+    text = path.with_suffix(".st")
+    text.write_text("FUNCTION_BLOCK Job\nVAR_IN_OUT axis : AXIS_REF; END_VAR\nVAR move : MC_MoveRelative; none : AXIS_REF; seen : LREAL; END_VAR\n"
+                    "seen := axis.position;\n"
+                    "move(Axis := axis, Execute := TRUE, Distance := 10.0, Velocity := 50.0);\nEND_FUNCTION_BLOCK\n", encoding="utf-8")
+    client = Client(lineshaft)
+    placed = client.launch(path, {text: [{"line": 5, "condition": "axis.position > 5.0"}]})
+    assert placed[text][0]["verified"]
+    stopped = client.event("stopped")
+    assert stopped["reason"] == "breakpoint"
+    frame = client.stack(stopped["threadId"])[0]["id"]
+
+    def value(text):
+        return client.request("evaluate", expression=text, frameId=frame)["result"]
+
+    assert 5.0 < float(value("axis.position")) < 6.0, value("axis.position")
+    assert value("axis.Position = seen") == "TRUE"
+    for watched, wanted in (("axis", "x"), ("none", "none"), ("axis.velocity > 40.0", "TRUE"), ("axis.state", "axis.state#discrete_motion")):
+        assert value(watched) == wanted, (watched, value(watched))
+    for watched, wanted in (("axis.none", "not known"), ("none.position", "to nothing")):
+        try:
+            raise AssertionError((watched, value(watched)))
+        except Refused as why:
+            assert wanted in str(why), (watched, why)
+    client.end()
+
+
 def test_parts_are_changed():
     """Whatever is a signal of the program, from each frame, as the view of variables shows its value."""
     path, text = parts()

@@ -14,6 +14,7 @@
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/value_text.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::debug {
 
@@ -177,25 +178,47 @@ class Reckoning {
 
     /// Of another block of the program.
     std::optional<Operand> signal(std::string_view name) const {
-        using Is = lineshaft::Type;
         const Signal* signal = frame_.machine->find(name);
         if (!signal) return {};
-        Operand found{.unit = signal->unit};
-        const st::Type* type = signal->unit == "ns" ? &st::time_type : &st::lint_type;
-        if (signal->type == Is::real) {
-            type = is_single(signal->port) ? &st::real_type : &st::lreal_type;
-            found.value.real = std::get<double>(signal->value());
-        } else if (signal->type == Is::boolean) {
+        return operand(signal->value(), *signal, is_single(signal->port));
+    }
+
+    /// Of a signal, or of a block's field.
+    template <class Named>
+    Operand operand(const Value& value, const Named& named, bool is_narrow) const {
+        using Is = lineshaft::Type;
+        Operand found{.unit = std::string(named.unit)};
+        const st::Type* type = named.unit == "ns" ? &st::time_type : &st::lint_type;
+        if (named.type == Is::real) {
+            type = is_narrow ? &st::real_type : &st::lreal_type;
+            found.value.real = std::get<double>(value);
+        } else if (named.type == Is::boolean) {
             type = &st::bool_type;
-            found.value.integer = std::get<bool>(signal->value());
+            found.value.integer = std::get<bool>(value);
         } else {
-            found.value.integer = std::get<std::int64_t>(signal->value());
+            found.value.integer = std::get<std::int64_t>(value);
         }
-        if (signal->type == Is::enumeration)
+        if (named.type == Is::enumeration)
             for (const st::Type& each : checked_.types)
-                if (std::ranges::equal(each.values, signal->names)) type = &each;
+                if (std::ranges::equal(each.values, named.names)) type = &each;
         found.seat = {type, nullptr, &frame_};
         return found;
+    }
+
+    /// `axis.position` of an AXIS_REF.
+    Operand field(const Operand& handle, const st::Expression& e) const {
+        const Referred to = block_of(handle.seat);
+        if (!to.at) throw Failed(fmt::format("'{}' is to nothing", e.operands[0]->place.text()));
+        const auto find = [&](std::string_view name) -> const Field* {
+            const auto& fields = to.block->type->fields;
+            const auto it = std::ranges::find_if(
+                fields, [&](const Field& f) { return st::same_name(f.name, name); });
+            return it == fields.end() ? nullptr : &*it;
+        };
+        const Field* found = find(e.token.text);
+        if (!found) found = find(st::standard_part_name(e.token.text));
+        if (!found) throw Failed(unknown(e));
+        return operand(lineshaft::load(found->type, to.at + found->offset), *found, false);
     }
 
     bool is_single(Port port) const {
@@ -257,6 +280,7 @@ class Reckoning {
             const std::string full = fmt::format("{}.{}", whole.name, e.token.text);
             return signal(full).value_or(Operand{.name = full});
         }
+        if (whole.seat.type->kind == st::Type::Kind::handle) return field(whole, e);
         if (whole.is_value()) return {.name = std::string(e.place.text())};
         const st::Type& type = *whole.seat.type;
         const st::Variable* part = st::find_member(type, e.token.text);

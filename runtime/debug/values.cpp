@@ -95,8 +95,8 @@ List fields_inside(const BlockType& kind, const std::byte* block) {
 }
 
 std::string handle_text(const Seat& seat) {
-    const auto number = read<std::int64_t>(seat.at);
-    return number < 0 ? "none" : fmt::format("{} number {}", seat.type->name, number);
+    const Referred to = block_of(seat);
+    return to.at ? to.block->name : "none";
 }
 
 void show_parts(Shown& shown, const Seat& seat) {
@@ -127,6 +127,10 @@ void show_parts(Shown& shown, const Seat& seat) {
             shown.inside = [seat](auto, auto) {
                 return fields_inside(*seat.type->standard, seat.at);
             };
+            break;
+        case Kind::handle:
+            if (const Referred to = block_of(seat); to.at)
+                shown.inside = [to](auto, auto) { return fields_inside(*to.block->type, to.at); };
             break;
         case Kind::reference:
             if (read<std::uint64_t>(seat.at) != 0)
@@ -192,6 +196,17 @@ Seat target_of(const Seat& reference) {
                     reference.frame};
     }
     return {};
+}
+
+Referred block_of(const Seat& handle) {
+    const auto number = read<std::int64_t>(handle.at);
+    if (number < 0 || number >= handle.frame->context->blocks) return {};
+    const std::byte* at = handle.frame->context->instances[number];
+    const auto& blocks = handle.frame->machine->blocks;
+    const auto it = std::ranges::find_if(
+        blocks, [&](const BlockPlace& b) { return b.live == at || b.published == at; });
+    if (it == blocks.end()) return {};
+    return {&*it, at};
 }
 
 std::byte* global_at(int global, const Frame& frame) {

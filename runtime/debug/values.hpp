@@ -35,6 +35,13 @@ Shown show(std::string name, const Seat& seat, const std::string& unit = {});
 /// What a reference is to, as the machine reaches it; `at` null: no value of its type, or NULL.
 Seat target_of(const Seat& reference);
 
+/// The block of the program that an AXIS_REF is to, as its scan sees it; `at` null: to none.
+struct Referred {
+    const BlockPlace* block = nullptr;
+    const std::byte* at = nullptr;
+};
+Referred block_of(const Seat& handle);
+
 /// What is in it, as a watch reaches it: a group has no name in the language.
 std::vector<Shown> parts_of(const Shown& whole, std::size_t first, std::size_t count);
 

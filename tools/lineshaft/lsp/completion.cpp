@@ -165,6 +165,9 @@ void Completion::add_members(const st::Type& type, Offer& to) const {
                 to.add(name, Kind::method, signature_of(*method));
     }
     for (const st::Variable* member : type.members) to.add(*member, Kind::field);
+    if (type.kind == st::Type::Kind::handle)
+        for (const lineshaft::Field& field : type.standard->fields)
+            to.add(field.name, Kind::field, std::string(field.unit), std::string(field.doc));
     for (const std::string& value : type.values) to.add(value, Kind::enum_, type.name);
 }
 
