@@ -396,7 +396,10 @@ def completion_offers_what_fits():
     text = on.client.texts[str(on.block)]
     on.client.change(on.block, text.replace("allowed := last;", "allowed := last;\ndelay.\nClamp(\nla"))
     assert {"q", "et"} <= {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
-    on.client.change(on.block, text + "FUNCTION_BLOCK Mover\nVAR_IN_OUT axis : AXIS_REF; END_VAR\nVAR v : LREAL; END_VAR\nv := axis.\nv := 1.0;\nEND_FUNCTION_BLOCK\n")
+    mover = text + "FUNCTION_BLOCK Mover\nVAR_IN_OUT axis : AXIS_REF; END_VAR\nVAR v : LREAL; END_VAR\nv := 1.0;\nEND_FUNCTION_BLOCK\n"
+    on.client.change(on.block, mover)
+    on.client.diagnosed(on.block)
+    on.client.change(on.block, mover.replace("v := 1.0;", "v := axis."))
     assert {"position", "velocity", "state"} <= set(on.labels(on.block, "axis.\n", None, 5))
     on.client.change(on.block, text.replace("allowed := last;", "allowed := last;\ndelay.\nClamp(\nla"))
     names = on.labels(on.block, "Clamp(\n", None, 6)

@@ -134,9 +134,10 @@ Expression* parse_primary(Parsing& p) {
 /// Member : Name | Direct | Unsigned_Int
 Expression* parse_member(Parsing& p, Expression* of) {
     const bool is_bit = p.is(Word::direct) || p.is(Word::integer);
-    if (!is_bit && !p.is(Word::name)) expected(p, "a name", "after '.'");
-    Expression* member =
-        p.make(is_bit ? Expression::Kind::bit : Expression::Kind::member, p.take());
+    const bool is_part = is_bit || p.is(Word::name);
+    if (!is_part) expected(p, "a name", "after '.'");
+    Expression* member = p.make(is_bit ? Expression::Kind::bit : Expression::Kind::member,
+                                is_part ? p.take() : p.here());
     p.add_operand(*member, 0, of);
     return member;
 }
