@@ -47,6 +47,9 @@ const Type* check(Checking& c, Expression*& e, const Type* expected) {
     const bool is_known = e->type;
     const Type* type = is_known ? e->type : check_kind(c, e, expected);
     e->type = type;
+    if (!type && c.out.count() == 0 && c.foreign.empty())
+        c.fail(code::type_does_not_fit, e->place, "what this is was not found out",
+               "write it in another way, and report it: this is no mistake of the program");
     if (!type || !type->is_alias()) return type;
     // What is known is what a reference is made of, or a variable that hangs in two places.
     return is_known && !is_place(*e) ? type : take_target(c, e);
