@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""A program with interfaces, references, pointers, a UNION, a process image and a sequence is resumed from its checkpoint
-at scans drawn at random, with native code or without before and behind: the trace and the last checkpoint are those of a run
-that was not resumed.
+"""A program with interfaces, references, pointers, a method that meets itself, a UNION, a process image and a sequence is
+resumed from its checkpoint at scans drawn at random, with native code or without before and behind: the trace and the last
+checkpoint are those of a run that was not resumed.
 
 usage: resume.py LINESHAFT [STOPS [SEED]]
 """
@@ -41,6 +41,14 @@ FUNCTION_BLOCK Down EXTENDS Up
 VAR p : POINTER TO DINT; END_VAR
 METHOD OVERRIDE Count : DINT VAR_INPUT step : DINT; END_VAR p := ADR(kept); p^ := p^ - step; Count := p^; END_METHOD
 END_FUNCTION_BLOCK
+FUNCTION_BLOCK Back
+VAR_INPUT me : POINTER TO Back; END_VAR
+METHOD Squares : DINT VAR_INPUT depth, n : DINT; END_VAR VAR own : DINT; END_VAR
+own := n * n;
+IF depth > 0 THEN Squares := me^.Squares(depth - 1, n + 1); END_IF
+Squares := Squares + own * depth;
+END_METHOD
+END_FUNCTION_BLOCK
 FUNCTION_BLOCK Walk
 VAR_OUTPUT passes : DINT; END_VAR
 VAR waits : INT; END_VAR
@@ -58,11 +66,12 @@ VAR_OUTPUT n, sum, total, steps : DINT; at_image : INT; bits : DWORD; END_VAR
 VAR_INPUT fed : BYTE; END_VAR
 VAR
   up : Up; down : Down; one : Counting; walk : Walk; table : ARRAY[0..9] OF INT; p : POINTER TO INT; r : REFERENCE TO Raw;
-  pb : POINTER TO BYTE; pi : POINTER TO Item; i : INT; own : Raw; text : STRING[12]; letters : POINTER TO BYTE;
+  back : Back; pb : POINTER TO BYTE; pi : POINTER TO Item; i : INT; own : Raw; text : STRING[12]; letters : POINTER TO BYTE;
 END_VAR
 n := n + 1;
 IF n MOD 2 = 0 THEN one := up; ELSE one := down; END_IF
-total := total + one.Count(n) + fed;
+back.me := ADR(back);
+total := total + one.Count(n) + fed + back.Squares(6, n MOD 9);
 IF n = 1 THEN p := ADR(table); pb := ADR(items); pi := ADR(items); letters := ADR(text); END_IF
 IF n MOD 3 = 0 THEN r REF= shared; ELSE r REF= own; END_IF
 p^ := DINT_TO_INT(n MOD 1000);

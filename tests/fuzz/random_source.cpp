@@ -1267,7 +1267,10 @@ class SourceMaker {
             if (callable.of->kind == Kind::interface && below(8) != 7) guard = instance;
         }
         if (!guard.empty()) line(fmt::format("IF {} <> NULL THEN", guard));
-        call(callable, std::move(text));
+        if (callable.is_method && below(4) != 3)
+            call_bounded([&] { call(callable, std::move(text)); });
+        else
+            call(callable, std::move(text));
         if (!guard.empty()) line("END_IF;");
     }
 
@@ -1743,12 +1746,25 @@ class SourceMaker {
         return before;
     }
 
-    /// No deeper than `depth_of_calls`. A method gives on what it was given as VAR_IN_OUT.
-    void call_itself(const Callable& callable) {
+    /// What it calls may come back, no deeper than `depth_of_calls`.
+    void call_bounded(const auto& calls) {
         ++indent_;
         line("IF depth_of_calls < 4 THEN");
         ++indent_;
         line("depth_of_calls := depth_of_calls + 1;");
+        calls();
+        line("depth_of_calls := depth_of_calls - 1;");
+        --indent_;
+        line("END_IF;");
+        --indent_;
+    }
+
+    void call_itself(const Callable& callable) {
+        call_bounded([&] { write_call_of_itself(callable); });
+    }
+
+    /// A method gives on what it was given as VAR_IN_OUT.
+    void write_call_of_itself(const Callable& callable) {
         if (callable.is_method) {
             std::string given;
             for (const Parameter& p : callable.parameters) {
@@ -1762,10 +1778,6 @@ class SourceMaker {
         } else {
             call(callable, callable.name);
         }
-        line("depth_of_calls := depth_of_calls - 1;");
-        --indent_;
-        line("END_IF;");
-        --indent_;
     }
 
     Parameters parameters(Callable& callable, bool pure) {

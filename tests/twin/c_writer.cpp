@@ -403,14 +403,17 @@ class CWriter {
             const Routine* found = wanted.owner ? nearest(*block, wanted) : block;
             if (!found || !has_body(*found)) continue;
             const Routine& of = found->owner ? *found->owner : *found;
+            put("case {}: twin_enter((({}*)self)->{} == twin_scan, {}, {});",
+                number_of(block->type), c_type(*of.type), mark_of(*found), found->depth,
+                main_.levels);
             const std::string call =
                 fmt::format("{}(({}*)self{})", name_of(*found), c_type(*of.type),
                             wanted.owner ? passed_on(wanted, *found) : "");
             if (wanted.result)
-                put("case {}: {{ {} r = {}; return *({}*)&r; }}", number_of(block->type),
-                    c_type(*found->result->type), call, c_type(*wanted.result->type));
+                put("{{ {} r = {}; return *({}*)&r; }}", c_type(*found->result->type), call,
+                    c_type(*wanted.result->type));
             else
-                put("case {}: return {};", number_of(block->type), call);
+                put("return {};", call);
         }
         put("}}\n__builtin_trap();\n}}");
     }
@@ -421,26 +424,36 @@ class CWriter {
         const Variable* result = routine.result;
         put("{} {{", head(routine, false));
         if (has_instance(routine))
-            put("if (self->{0} == twin_scan) twin_fault(runs_already, {1});\n"
-                "self->{0} = twin_scan;",
-                mark_of(routine), routine.pou->place.mark().line);
+            put("const i64 ran = self->{0};\nself->{0} = twin_scan;", mark_of(routine));
+        put("++twin_calls;");
         for (const Variable& v : routine.variables) {
             if (v.space != Space::frame || (is_block ? v.section != Section::temp : is_input(v)))
                 continue;
-            if (!is_block) put("{} {};", c_type(*v.type), name_of(v));
+            if (is_block)
+                put("const {0} kept_{1} = self->{1};", c_type(*v.type), name_of(v));
+            else
+                put("{} {};", c_type(*v.type), name_of(v));
             begin(v, (is_block ? "self->" : "") + name_of(v));
         }
         write(routine.body);
-        put("leave:;");
-        if (has_instance(routine)) put("self->{} = 0;", mark_of(routine));
+        put("leave:;\n--twin_calls;");
         for (const Variable& v : routine.variables)
             if (!is_block && v.section == Section::output && v.space == Space::frame)
                 put("*out_{0} = {0};", name_of(v));
         for (const Variable& v : routine.variables)
             if (is_eno(v)) put("twin_eno = {}{};", is_block ? "self->" : "", name_of(v));
+        if (has_instance(routine)) end_on_instance(routine);
         if (result) put("return {};", name_of(*result));
         put("}}");
         routine_ = nullptr;
+    }
+
+    /// What the outer call of a body has is there again.
+    void end_on_instance(const Routine& routine) {
+        put("self->{} = ran;", mark_of(routine));
+        for (const Variable& v : routine.variables)
+            if (!routine.owner && v.space == Space::frame && v.section == Section::temp)
+                put("if (ran == twin_scan) self->{0} = kept_{0};", name_of(v));
     }
 
     void write_ends() {
@@ -468,7 +481,8 @@ class CWriter {
                 put("{} = ({})in[{}];", to, c_type(*v.type), input);
             ++input;
         }
-        put("++twin_scan;\ni64 fault = setjmp(twin_end);\nif (fault == 0) {}(&{}main);\nreturn "
+        put("++twin_scan;\ntwin_calls = -1;\ni64 fault = setjmp(twin_end);\nif (fault == 0) "
+            "{}(&{}main);\nreturn "
             "fault;\n}}",
             name_of(main_), prefix_);
         put("static u64* {}dump(u64* to) {{", prefix_);
@@ -665,10 +679,12 @@ class CWriter {
     void write_try(const Statement& s) {
         const std::string kept = new_name(), fault = new_name();
         put("{{ jmp_buf {0}; memcpy({0}, twin_end, sizeof {0});", kept);
-        put("const int {0} = setjmp(twin_end) / 1000000;\nif (!{0}) {{", fault);
+        put("const i64 calls_{0} = twin_calls;\n"
+            "const int {0} = setjmp(twin_end) / 1000000;\nif (!{0}) {{",
+            fault);
         write(s.body);
         put("memcpy(twin_end, {0}, sizeof {0});\n}} else {{", kept);
-        put("memcpy(twin_end, {0}, sizeof {0});", kept);
+        put("memcpy(twin_end, {0}, sizeof {0});\ntwin_calls = calls_{1};", kept, fault);
         if (s.target) put("{} = twin_exception({});", place(*s.target), fault);
         write(s.branches[0].body);
         put("}}");
@@ -1105,7 +1121,7 @@ class CWriter {
 
     std::string call_routine(const Expression& e) {
         const Routine& routine = *e.routine;
-        std::string given, own;
+        std::string given;
         const auto add = [&](const std::string& text) {
             given += (given.empty() ? "" : ", ") + text;
         };
@@ -1115,7 +1131,7 @@ class CWriter {
             const std::string type = e.is_dispatched ? "block" : c_type(*routine.owner->type);
             const bool through = of && of->type->kind == Kind::interface;
             const std::string self = through ? instance(*of) : of ? "&" + place(*of) : "self";
-            add(own = made(type + "*", fmt::format("({}*){}", type, self)));
+            add(made(type + "*", fmt::format("({}*){}", type, self)));
             if (through) put("if (!{}) {};", given, fault("no_reference"));
         }
         if (e.is_dispatched) dispatched_.insert(&routine);
@@ -1136,16 +1152,11 @@ class CWriter {
             values[&v] = name;
         }
         const std::string name = new_name();
-        const std::string mark =
-            routine.owner ? fmt::format("{}->{}", own, mark_of(routine)) : std::string();
-        const bool recurs = routine.owner && !e.is_dispatched && routine.ring != 0 &&
-                            routine.ring == routine_->ring;
-        if (recurs) put("const __typeof__({1}) mark_{0} = {1}; {1} = 0;", name, mark);
+        if (e.is_dispatched) put("twin_line = {};", line_);
         if (routine.result)
             put("{} {} = {}({});", c_type(*routine.result->type), name, callee, given);
         else
             put("{}({});", callee, given);
-        if (recurs) put("{} = mark_{};", mark, name);
         for (const Argument& argument : e.arguments)
             if (is_eno(*argument.variable))
                 take("twin_eno", argument);
@@ -1195,6 +1206,7 @@ class CWriter {
         for (const auto& [v, given] : later) put("{}->{} = {};", self, name_of(*v), given);
         if (e.is_dispatched) {
             dispatched_.insert(type.routine);
+            put("twin_line = {};", line_);
             put("{}((block*){});", dispatch_of(*type.routine), self);
         } else if (type.kind == Kind::block)
             put("{}({});", name_of(*type.routine), self);

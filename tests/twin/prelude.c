@@ -8,6 +8,8 @@ jmp_buf twin_end;
 i64 twin_now;
 i64 twin_scan;
 u8 twin_eno;
+i64 twin_calls;
+int twin_line;
 
 void twin_fault(int fault, int line) {
     longjmp(twin_end, fault * 1000000 + line);
@@ -15,7 +17,11 @@ void twin_fault(int fault, int line) {
 
 i64 twin_exception(int fault) {
     return fault == array_bounds ? 0x101 : fault == division_by_zero ? 0x102 : fault == out_of_range ? 0x103
-         : fault == runs_already ? 0x54 : 0x51;
+         : fault == runs_already || fault == calls_too_deep ? 0x54 : 0x51;
+}
+
+void twin_enter(int runs, i64 depth, i64 levels) {
+    if (twin_calls + 1 + depth > levels) twin_fault(runs ? calls_too_deep : no_end, twin_line);
 }
 
 u8* twin_reach(pointer p, i64 size, int line) {

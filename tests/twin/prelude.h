@@ -22,14 +22,19 @@ typedef __int128 i128;
 /* Of what need not be fast, so that compiling it is. */
 #define COLD __attribute__((cold, noinline))
 
-enum { array_bounds = 1, division_by_zero, out_of_range, no_reference, no_end, runs_already, outside_of_variable };
+enum { array_bounds = 1, division_by_zero, out_of_range, no_reference, no_end, runs_already, outside_of_variable,
+    calls_too_deep = 10 };
 
 extern jmp_buf twin_end;
 extern i64 twin_now;
 extern i64 twin_scan; /* its number, from 1 on */
 extern u8 twin_eno; /* of the routine that ended last */
+extern i64 twin_calls; /* that run */
+extern int twin_line; /* of the last call that an instance finds */
 void twin_fault(int fault, int line) __attribute__((noreturn));
 i64 twin_exception(int fault);
+/* Of what an instance has found: so many levels are there, and so many are below it. */
+void twin_enter(int runs, i64 depth, i64 levels);
 
 /* An instance of a block that others may stand for: which one it is. */
 typedef struct { i64 kind; } block;

@@ -377,13 +377,14 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
             refuse_without(c, call, type.name, *member);
 }
 
-/// That the routine at hand runs `called`, if it is known.
-void note_call(Checking& c, const Expression& call, Routine* called) {
+/// That the routine at hand runs `called`.
+void note_call(Checking& c, const Expression& call, Routine& called) {
     if (!c.routine) return;
     if (call.is_dispatched) {
         c.routine->dispatches = c.checked.dispatches = true;
-    } else if (called) {
-        c.routine->calls.push_back({called, call.place, is_through_reference(call), true});
+        c.routine->finds.push_back(&called);
+    } else {
+        c.routine->calls.push_back({&called, call.place, is_through_reference(call), true});
     }
 }
 
@@ -398,10 +399,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
                           fmt::format("{} is a CLASS, and has no body", type.name),
                           "call one of its methods");
         e->is_dispatched = type.routine->is_replaced && may_be_derived(instance);
-        const Variable* root = root_of(instance).variable;
-        const bool is_elsewhere =
-            instance.kind == E::self || (root && root->space == Space::global);
-        note_call(c, *e, is_elsewhere ? type.routine : nullptr);
+        note_call(c, *e, *type.routine);
         e->routine = type.routine;
         if (root_of(*e->operands[0]).kind == E::deref) depend(c, &type, e->place, true);
         check_arguments(c, e, *type.routine);
@@ -416,7 +414,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
 const Type* check_routine_call(Checking& c, Expression*& e, Routine& routine, bool as_statement) {
     e->routine = &routine;
     c.note(e->operands[0]->token.place, routine);
-    note_call(c, *e, &routine);
+    note_call(c, *e, routine);
     check_arguments(c, e, routine);
     if (routine.result) return routine.result->type;
     if (!as_statement)

@@ -302,7 +302,10 @@ bool coerce_instance(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (is_constant(*e) && from.is_any() && e->constant.integer == 0) return become(c, e, to, {});
     const bool has_methods = from.kind == Kind::block || from.kind == Kind::interface;
-    if (has_methods && is_a(*from.routine, *to.routine)) return become_converted(c, e, to);
+    if (has_methods && is_a(*from.routine, *to.routine)) {
+        note_held_instance(c, *e);
+        return become_converted(c, e, to);
+    }
     if (has_methods && from.routine->has_unknown_base) return false;
     return c.fail(code::type_does_not_fit, e->place,
                   fmt::format("expected {}, found {}", describe(to), describe(from)),

@@ -141,6 +141,7 @@ void begin_anew(Checking& c, Routine& routine, Variable& variable) {
         return use;
     };
     routine.call_begins.push_back(make_assignment(c, like.place, use_of(variable), use_of(fresh)));
+    routine.holds_instance = true;
 }
 
 /// A block keeps which axis it was given last. Of a call the variable itself is meant, which a

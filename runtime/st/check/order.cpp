@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
@@ -87,7 +88,13 @@ struct Rings {
     struct Visit {
         std::size_t number = 0, lowest = 0;
         bool is_open = true;
+        bool runs_rings = false;
     };
+    using Callees = std::vector<Routine*> (*)(const Checking&, const Routine&);
+
+    const Checking& c;
+    Callees callees;
+    int Routine::*ring;
     std::unordered_map<Routine*, Visit> visits = {};
     std::vector<Routine*> open = {};
     int found = 0;
@@ -97,35 +104,83 @@ struct Rings {
         own.number = own.lowest = visits.size();
         open.push_back(&routine);
         bool is_ring = false;
-        for (const Called& called : routine.calls) {
-            is_ring |= called.routine == &routine;
-            const auto it = visits.find(called.routine);
-            const Visit& other = it != visits.end() ? it->second : visit(*called.routine);
+        for (Routine* called : callees(c, routine)) {
+            is_ring |= called == &routine;
+            const auto it = visits.find(called);
+            const Visit& other = it != visits.end() ? it->second : visit(*called);
             if (other.is_open) own.lowest = std::min(own.lowest, other.lowest);
+            own.runs_rings |= other.runs_rings;
         }
-        if (own.lowest == own.number) close(routine, is_ring);
+        if (own.lowest == own.number) close(routine, is_ring, own.runs_rings);
         return own;
     }
 
-    void close(Routine& first, bool is_ring) {
+    void close(Routine& first, bool is_ring, bool runs_rings) {
         is_ring |= open.back() != &first;
+        runs_rings |= is_ring;
         found += is_ring;
         for (Routine* last = nullptr; last != &first; open.pop_back()) {
             last = open.back();
             visits[last].is_open = false;
-            last->ring = is_ring ? found : 0;
+            visits[last].runs_rings = last->runs_rings = runs_rings;
+            last->*ring = is_ring ? found : 0;
         }
     }
 };
 
-void note_rings(Ordering& o) {
-    Rings rings;
-    for (Routine* routine : o.c.checked.order)
+void note_rings(const Checking& c, Rings::Callees callees, int Routine::*ring) {
+    Rings rings{c, callees, ring};
+    for (Routine* routine : c.checked.order)
         if (!rings.visits.contains(routine)) rings.visit(*routine);
+}
+
+std::vector<Routine*> plain_callees(const Checking&, const Routine& routine) {
+    std::vector<Routine*> callees;
+    for (const Called& called : routine.calls) callees.push_back(called.routine);
+    return callees;
+}
+
+void note_plain_rings(Ordering& o) {
+    note_rings(o.c, plain_callees, &Routine::plain_ring);
     for (const Routine* routine : o.c.checked.order)
         for (const Called& called : routine->calls)
-            if (routine->ring != 0 && called.routine->ring == routine->ring && !called.may_recur())
+            if (routine->plain_ring != 0 && called.routine->plain_ring == routine->plain_ring &&
+                !called.may_recur())
                 o.rounds.push_back({&called, hops_of({&called}), false});
+}
+
+/// What its calls may find.
+std::vector<Routine*> found_callees(const Checking& c, const Routine& routine) {
+    std::vector<Routine*> callees;
+    for (const Routine* wanted : routine.finds)
+        for (const Routine* block : c.checked.order)
+            if (const Routine* found =
+                    block->has_instances() ? find_routine(*block, *wanted) : nullptr)
+                callees.push_back(const_cast<Routine*>(found));
+    return callees;
+}
+
+/// An instance that is declared stands for what is called of it, one that is only referred to does
+/// not.
+std::vector<Routine*> all_callees(const Checking& c, const Routine& routine) {
+    std::vector<Routine*> callees = found_callees(c, routine);
+    for (const Called& called : routine.calls)
+        if (called.is_call || !called.through_reference) callees.push_back(called.routine);
+    return callees;
+}
+
+/// What instances find may lead back, too.
+void note_all_rings(Checking& c) {
+    for (Routine* routine : c.checked.order) {
+        std::ranges::sort(routine->finds);
+        routine->finds.erase(std::ranges::unique(routine->finds).begin(), routine->finds.end());
+    }
+    note_rings(c, all_callees, &Routine::ring);
+    std::unordered_set<int> met;
+    for (const Routine* routine : c.checked.order)
+        for (const Routine* found : found_callees(c, *routine))
+            if (routine->ring != 0 && found->ring == routine->ring) met.insert(routine->ring);
+    for (Routine* routine : c.checked.order) routine->is_met = met.contains(routine->ring);
 }
 
 void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
@@ -143,6 +198,8 @@ void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
 void find_by_instances(Checking& c) {
     bool is_one = false;
     for (Routine& routine : c.checked.routines) {
+        for (const Called& called : routine.calls)
+            if (called.is_call && is_found(called)) routine.finds.push_back(called.routine);
         if (std::erase_if(routine.calls, is_found) > 0) routine.dispatches = is_one = true;
         for (Routine* r = routine.is_looped ? &routine : nullptr; r; r = r->overrides)
             r->is_dispatched = true;
@@ -175,7 +232,11 @@ void order_routines(Checking& c) {
     while (!order(o)) continue;
     find_by_instances(c);
     const bool is_right = std::ranges::all_of(o.rounds, &Round::recurs);
-    if (is_right && !o.rounds.empty()) note_rings(o);
+    if (is_right && !o.rounds.empty()) note_plain_rings(o);
+    if (c.checked.dispatches)
+        note_all_rings(c);
+    else
+        for (Routine* routine : c.checked.order) routine->ring = routine->plain_ring;
     tell_of_rounds(c, o.rounds);
 }
 

@@ -148,6 +148,7 @@ bool refers_to_block(const Type& type) {
 /// `given` as one of `to`, or none if it is not.
 Expression* attempted(Checking& c, Expression* given, const Type& to) {
     if (given->type->kind == Kind::block) note_lending(c, *given);
+    if (to.kind == Kind::interface) note_held_instance(c, *given);
     if (Variable* root = root_of(*given).variable) root->used = true;
     Expression* made = make_converted(c, given, to);
     made->conversion.is_attempt = c.checked.dispatches = true;
@@ -284,6 +285,11 @@ const Type* check_pointer_index(Checking& c, Expression*& e) {
 void note_lending(Checking& c, const Expression& place) {
     const Expression& root = root_of(place);
     if (c.routine && root.variable && root.variable->ends_with_call()) c.routine->lends = true;
+}
+
+void note_held_instance(Checking& c, const Expression& given) {
+    const Variable* root = given.type->kind == Kind::block ? root_of(given).variable : nullptr;
+    if (c.routine && root && root->ends_with_call()) c.routine->holds_instance = true;
 }
 
 void check_attempt(Checking& c, Statement& s) {

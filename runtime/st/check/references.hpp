@@ -32,6 +32,8 @@ const Type* check_pointer_index(Checking& c, Expression*& e);
 
 /// A VAR_IN_OUT is given that: what it refers to may end with the call at hand.
 void note_lending(Checking& c, const Expression& place);
+/// What an interface is given, which may be an instance of one call.
+void note_held_instance(Checking& c, const Expression& given);
 
 /// `target ?= value;`: NULL, where what the value is to is not of the target's type.
 void check_attempt(Checking& c, Statement& s);

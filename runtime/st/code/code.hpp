@@ -40,8 +40,10 @@ struct SlotRange {
     std::uint32_t first = 0, end = 0;
 };
 
-/// Slots of a block's memory behind its frame, for the frames of calls that recur.
+/// The most slots of a block's memory behind its frame for the frames of calls that recur.
 inline constexpr std::uint32_t pile_slots = 16384;
+/// Slots that each of them has besides.
+inline constexpr std::uint32_t record_end = 4;
 
 struct CodeRoutine {
     std::string name;
@@ -51,9 +53,10 @@ struct CodeRoutine {
     std::uint32_t levels = 0;  ///< that an instance which runs it has room for
     std::uint32_t mark = 0;    ///< slot that says that it runs; 0: it has none
     std::vector<ConstantSlot> constants = {};  ///< by their slots
-    /// Of a method in a ring: what a call of it changes of another one on the same instance.
+    /// In a ring: what a call of it changes of another one on the same instance.
     SlotRange variables = {}, temporaries = {};
-    std::uint32_t pile = 0;  ///< where the frames of calls that recur begin; 0: it has none
+    bool holds_instance = false;  ///< of a call, which is not put aside
+    SlotRange pile = {};          ///< where the frames of calls that recur are
 
     std::uint32_t kept() const {
         return variables.end - variables.first + temporaries.end - temporaries.first;

@@ -199,7 +199,7 @@ Fault run_whole(Frames& frames) {
             fuel,
             instance,
             instance + 8 * std::size_t{code.calls_slot()},
-            instance + 8 * std::size_t{routine.pile}};
+            instance + 8 * std::size_t{routine.pile.first}};
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.

@@ -25,8 +25,7 @@ auto where(const std::byte* reference) {
     return std::pair(word(reference, 0), bytes_from_first(reference));
 }
 
-/// A record of a call that recurs ends with so many slots, of which the first has an address.
-constexpr std::size_t record_end = 3;
+static_assert(sizeof(Frames::Record) == 8 * record_end);
 constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
 }  // namespace
@@ -113,65 +112,104 @@ bool Frames::has(std::uint64_t address, std::uint32_t method) const {
 }
 
 bool Frames::has_room(std::uint64_t routine) const {
-    const auto running = static_cast<std::uint64_t>(top - bottom) / 16;
-    return running + 1 + code.routines[routine].depth <= scanned.levels;
+    return running() + 1 + code.routines[routine].depth <= scanned.levels;
 }
 
 std::byte* Frames::pile_begin() const {
-    return root + 8 * std::size_t{scanned.pile};
+    return root + 8 * std::size_t{scanned.pile.first};
 }
 
-bool Frames::keep(std::byte* to, std::uint64_t routine, std::uint64_t address,
-                  std::uint64_t slots) {
-    const std::uint64_t bytes = 8 * (slots + record_end);
-    const auto taken = static_cast<std::uint64_t>(pile - pile_begin());
-    const bool fits = scanned.pile != 0 && taken + bytes <= 8 * std::uint64_t{pile_slots};
-    if (!fits || !has_room(routine)) return false;
-    set_word(to, 0, static_cast<std::uint64_t>(pile - root) / 8);
+bool Frames::keep(const Record& record) {
+    const std::uint64_t bytes = 8 * record.slots + sizeof record;
+    if (bytes > static_cast<std::uint64_t>(root + 8 * std::size_t{scanned.pile.end} - pile))
+        return false;
     pile += bytes;
-    set_word(pile - 8 * record_end, 0, address);
-    set_word(pile - 8 * record_end, 1, routine);
-    set_word(pile - 8 * record_end, 2, static_cast<std::uint64_t>(top - bottom) / 16);
+    std::memcpy(pile - sizeof record, &record, sizeof record);
     return true;
+}
+
+Frames::Record Frames::last_record() const {
+    Record record;
+    std::memcpy(&record, pile - sizeof record, sizeof record);
+    return record;
+}
+
+std::byte* Frames::kept_by(const Record& record) const {
+    return pile - sizeof record - 8 * record.slots;
+}
+
+/// Each part of a frame that is kept, with the place where.
+static void each_kept(const CodeRoutine& routine, std::byte* frame, std::byte* kept, auto&& each) {
+    for (const auto& [first, end] : {routine.variables, routine.temporaries}) {
+        each(frame + 8 * std::size_t{first}, kept, 8 * std::size_t{end - first});
+        kept += 8 * std::size_t{end - first};
+    }
+}
+
+static void exchange(std::byte* in_frame, std::byte* kept, std::size_t bytes) {
+    std::swap_ranges(kept, kept + bytes, in_frame);
 }
 
 bool Frames::push(std::byte* to, std::uint64_t routine) {
-    return keep(to, routine, no_frame, code.routines[routine].frame);
-}
-
-bool Frames::save(std::byte* to, std::uint64_t routine, std::uint64_t address) {
-    const CodeRoutine& method = code.routines[routine];
-    if (!keep(to, routine, address, method.kept())) return false;
-    std::byte* kept = place(word(to, 0));
-    for (const auto& [first, end] : {method.variables, method.temporaries}) {
-        copy_slots(kept, place(address + first), end - first);
-        kept += 8 * std::size_t{end - first};
-    }
+    if (!has_room(routine) || !keep({code.routines[routine].frame, no_frame, routine, running()}))
+        return false;
+    set_word(to, 0, static_cast<std::uint64_t>(kept_by(last_record()) - root) / 8);
     return true;
 }
 
-void Frames::swap() const {
-    const std::uint64_t address = word(pile - 8 * record_end, 0);
-    const CodeRoutine& method = code.routines[word(pile - 8 * record_end, 1)];
-    std::byte* kept = pile - 8 * (record_end + method.kept());
-    for (const auto& [first, end] : {method.variables, method.temporaries}) {
-        const std::size_t bytes = 8 * std::size_t{end - first};
-        std::swap_ranges(kept, kept + bytes, place(address + first));
-        kept += bytes;
-    }
+Fault Frames::save(std::uint64_t routine, std::uint64_t address) {
+    const CodeRoutine& called = code.routines[routine];
+    std::byte* frame = place(address);
+    const bool runs = called.mark == 0 || word(frame, called.mark) != 0;
+    const bool is_kept = (!runs || has_room(routine)) &&
+                         keep({runs ? called.kept() : 0, address, routine, running()});
+    if (!is_kept) return Fault::calls_too_deep;
+    if (!runs) return Fault::none;
+    if (called.holds_instance) return Fault::runs_already;
+    if (called.mark != 0) set_word(frame, called.mark, 0);
+    each_kept(called, frame, kept_by(last_record()),
+              [](const std::byte* in_frame, std::byte* kept, std::size_t bytes) {
+                  std::memcpy(kept, in_frame, bytes);
+              });
+    return Fault::none;
+}
+
+std::uint64_t Frames::lent(std::uint64_t address) const {
+    const Record record = last_record();
+    if (record.slots == 0) return address;
+    std::uint64_t found = address;
+    const auto number = [](const std::byte* at) { return reinterpret_cast<std::uintptr_t>(at); };
+    each_kept(code.routines[record.routine], place(record.address), kept_by(record),
+              [&](const std::byte* in_frame, const std::byte* kept, std::size_t bytes) {
+                  const std::uintptr_t behind = number(place(address)) - number(in_frame);
+                  if (behind < bytes)
+                      found = (static_cast<std::uint64_t>(kept - root) + behind) / 8;
+              });
+    return found;
+}
+
+std::uint64_t Frames::swap() const {
+    const Record record = last_record();
+    const CodeRoutine& called = code.routines[record.routine];
+    if (record.slots == 0) return record.address + called.variables.first;
+    std::byte* frame = place(record.address);
+    each_kept(called, frame, kept_by(record), exchange);
+    if (called.mark != 0) set_word(frame, called.mark, 1);
+    return static_cast<std::uint64_t>(kept_by(record) - root) / 8;
 }
 
 void Frames::pop() {
-    const std::byte* record = pile - 8 * record_end;
-    const CodeRoutine& routine = code.routines[word(record, 1)];
-    const bool has_own = word(record, 0) == no_frame;
-    pile -= 8 * (record_end + (has_own ? routine.frame : routine.kept()));
+    pile = kept_by(last_record());
 }
 
-void Frames::unwind(std::uint64_t running) {
-    while (pile != pile_begin() && word(pile - 8, 0) >= running) {
-        if (word(pile - 8 * record_end, 0) != no_frame) swap();
-        pop();
+void Frames::unwind(std::uint64_t calls) {
+    for (; pile != pile_begin() && last_record().running >= calls; pop()) {
+        const Record record = last_record();
+        const CodeRoutine& called = code.routines[record.routine];
+        if (record.slots == 0 || record.address == no_frame) continue;
+        std::byte* frame = place(record.address);
+        each_kept(called, frame, kept_by(record), exchange);
+        if (called.mark != 0) set_word(frame, called.mark, 0);
     }
 }
 
@@ -192,7 +230,7 @@ Fault Frames::end(Fault fault, std::uint64_t at) const {
     set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
     if (fault == Fault::none) return fault;
     set_word(root, place_slot, at);
-    set_word(root, depth_slot, static_cast<std::uint64_t>(top - bottom) / 16);
+    set_word(root, depth_slot, running());
     if (code.has_kinds) mark(at, base, false);
     return fault;
 }
@@ -208,7 +246,7 @@ std::optional<std::uint64_t> Frames::caught(Fault fault) {
         if (it != code.handlers.end()) {
             top = level;
             base = frame;
-            unwind(static_cast<std::uint64_t>(top - bottom) / 16);
+            unwind(running());
             if (code.has_kinds) mark(at, base, true);
             return it->entry;
         }
@@ -240,7 +278,7 @@ bool Frames::advance(std::int64_t by, std::int64_t interval) const {
 
 bool Frames::ends_at(std::uint64_t behind) const {
     if (!code.witness) return true;
-    return code.witness->ends_at(behind - 1, base, static_cast<std::uint64_t>(top - bottom) / 16);
+    return code.witness->ends_at(behind - 1, base, running());
 }
 
 bool Frames::goes_on(const Piece& piece, const std::byte* reference, std::uint64_t next) const {

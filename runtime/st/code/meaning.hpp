@@ -340,17 +340,25 @@ struct Frames {
 
     bool has_room(std::uint64_t routine) const;
 
-    // Calls within a ring of routines that call one another. Each has a record on a pile: slots,
-    // the address of the frame that they are kept of, or none, the routine, and how many calls ran.
+    // Calls within a ring of routines that call one another. Each has slots on a pile, and behind
+    // them a record.
+
+    struct Record {
+        std::uint64_t slots = 0;                 ///< 0: what is called does not run there already
+        std::uint64_t address = 0;               ///< of the frame that they are kept of; or none
+        std::uint64_t routine = 0, running = 0;  ///< and how many calls ran
+    };
 
     /// A function, which gets a frame of its own: its address, to the slot. False: there is no
     /// room.
     bool push(std::byte* to, std::uint64_t routine);
-    /// A method on the instance at the address: what it may change of a call of its own that runs
-    /// is kept at the address that the slot is given.
-    bool save(std::byte* to, std::uint64_t routine, std::uint64_t address);
-    /// Behind the call of a method: what is kept is there again, and what the call left is kept.
-    void swap() const;
+    /// A method or a body on the instance at the address: what it may change of a call of its own
+    /// is kept, if one runs there.
+    Fault save(std::uint64_t routine, std::uint64_t address);
+    /// The address of what is lent to that call, which may be in what is kept.
+    std::uint64_t lent(std::uint64_t address) const;
+    /// Behind the call: what is kept is there again. Gives the address of what the call left.
+    std::uint64_t swap() const;
     void pop();
 
     /// Whether what runs on that frame at that instruction, and what called it, runs.
@@ -428,10 +436,13 @@ struct Frames {
     Fault end(Fault fault, std::uint64_t at) const;
 
   private:
+    std::uint64_t running() const { return static_cast<std::uint64_t>(top - bottom) / 16; }
     std::byte* pile_begin() const;
+    Record last_record() const;
+    std::byte* kept_by(const Record& record) const;
     /// Of the calls that a fault ends, where so many run behind it.
-    void unwind(std::uint64_t running);
-    bool keep(std::byte* to, std::uint64_t routine, std::uint64_t address, std::uint64_t slots);
+    void unwind(std::uint64_t calls);
+    bool keep(const Record& record);
 };
 
 }  // namespace lineshaft::st::meaning

@@ -29,6 +29,11 @@
     if (wrong == Fault::call_has_ended) FAIL(call_has_ended);                                        \
     if (wrong == Fault::out_of_range) FAIL(out_of_range)
 
+#define LINESHAFT_ST_SAVED(fault)                                                                    \
+    const Fault wrong = fault;                                                                       \
+    if (wrong == Fault::calls_too_deep) FAIL(calls_too_deep);                                        \
+    if (wrong == Fault::runs_already) FAIL(runs_already)
+
 #define LINESHAFT_ST_OPCODES(OP)                                                                     \
     OP(move, move, "wr--", put(a, U(b)))                                                             \
     OP(copy, move, "ssn-", copy_slots(at(a), at(b), c))                                              \
@@ -95,11 +100,12 @@
     OP(attempt, move, "wrn-", put(a, U(b) != 0 && frames.has(U(b), c) ? U(b) : 0))        \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); if (!frames.has_room(found)) FAIL(no_end); CALL(U(a), found)) \
     OP(push_frame, call, "wf--", if (!frames.push(at(a), b)) FAIL(calls_too_deep))                    \
-    OP(save_frame, call, "wfr-", if (!frames.save(at(a), b, U(c))) FAIL(calls_too_deep))              \
-    OP(swap_frame, call, "----", frames.swap())                                                       \
+    OP(save_frame, call, "-fr-", LINESHAFT_ST_SAVED(frames.save(b, U(c))))                            \
+    OP(save_found, call, "-rr-", LINESHAFT_ST_SAVED(frames.save(U(b), U(c))))                         \
+    OP(lent, call, "wr--", put(a, frames.lent(U(b))))                                                 \
+    OP(swap_frame, call, "w---", const std::uint64_t results = frames.swap(); put(a, results))        \
     OP(pop_frame, call, "----", frames.pop())                                                         \
     OP(exception, move, "w---", put(a, frames.exception()))                                           \
-    OP(begin_once, call, "w---", if (U(a) != 0) FAIL(runs_already); put(a, std::uint64_t{1}))        \
     OP(call_block, call, "sn--", code.call_block(at(a), b, frames.now, frames.context))                                        \
     OP(call_block_at, call, "rn--", code.call_block(target(U(a)), b, frames.now, frames.context))                              \
     OP(advance_time, call, "-rr-", if (!frames.advance(I(b), I(c))) FAIL(out_of_range); fuel = frames.fuel) \

@@ -1,8 +1,6 @@
 #include <algorithm>
+#include <functional>
 
-#include <fmt/format.h>
-
-#include "runtime/source/codes.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/statements.hpp"
@@ -17,6 +15,7 @@ struct Later {
     Location to;
     Slot slot;
     std::uint32_t slots = 0;  ///< of an array, a structure, a text or a reference
+    bool is_lent = false;     ///< an address
 };
 
 /// A VAR_IN_OUT is given a copy of what is no slot of its own, which is written back behind the
@@ -64,45 +63,20 @@ Location kept(Writing& w, const Expression& value) {
     return made;
 }
 
-/// A call within a ring of routines: the callee may run already.
-bool recurs(const Writing& w, const Expression& e) {
-    return !e.is_dispatched && w.routine->ring != 0 && e.routine->ring == w.routine->ring;
-}
-
-/// A variable of a method's call, which has another value while the method runs once more.
-bool is_in_call(const Writing& w, const Expression& value) {
-    const Expression* at = &value;
-    while (at->kind == E::member || at->kind == E::index || at->kind == E::bit)
-        at = at->operands[0];
-    const auto is_it = [&](const Variable& own) { return at->variable == &own; };
-    return at->kind == E::name && at->variable->space == Space::frame &&
-           at->variable->section != Section::kept &&
-           std::ranges::any_of(w.routine->variables, is_it);
-}
-
-void refuse_lent(Writing& w, const Variable& variable, const Expression& value) {
-    w.out.add(code::wrong_arguments, value.place.mark(),
-              fmt::format("'{}' of a call that may recur is given a variable of the method's call",
-                          variable.text),
-              "declare that variable in the block, or take the value as a result");
-}
-
 /// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. A copy is
 /// referred to by nothing: ADR of that VAR_IN_OUT is NULL.
-void refer(Writing& w, const Expression& e, const Location& to, const Variable& variable,
-           const Expression& value, std::vector<Later>& later, std::vector<Lent>& lent) {
+void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
+           std::vector<Later>& later, std::vector<Lent>& lent) {
     const bool is_value = value.kind == E::call || value.kind == E::converted;
     Location at = is_value ? kept(w, value) : locate(w, value);
     const bool is_lent = is_value || is_in_bytes(at);
-    if (w.routine->owner && recurs(w, e) && (is_lent || is_in_call(w, value)))
-        return refuse_lent(w, variable, value);
     if (is_lent && !is_value) {
         if (at.mode != Mode::slot) at = as_address(w, at);
         lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, *value.type))}, value.type});
         write(w, lent.back().copy, at, *value.type);
         at = lent.back().copy;
     }
-    later.push_back({to, address_of(w, at)});
+    later.push_back({to, address_of(w, at), 0, true});
     if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, *value.type)});
     if (!w.checked.refers_to_in_outs) return;
     const Location reference = behind(to, variable.type->is_open ? 2 : 1);
@@ -129,17 +103,14 @@ void give_left_out(Writing& w, const Location& frame, const Expression& e) {
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
         std::vector<Lent> lent;  // what stands for it is a variable of its own
-        refer(w, e, reference, *argument.variable, *argument.value, later, lent);
+        refer(w, reference, *argument.variable, *argument.value, later, lent);
         give(w, later);
         w.land(given);
     }
 }
 
-/// What a method in a ring keeps of the call that may run, in slots from that address on. What is
-/// given to it may stand in that call, and is put aside.
-void save(Writing& w, const Location& frame, const Expression& e, Slot kept,
-          std::vector<Later>& later) {
-    const Routine& routine = *e.routine;
+/// What is given to a call that may meet itself may stand in what that runs on, and is put aside.
+void put_aside(Writing& w, std::vector<Later>& later) {
     for (Later& value : later) {
         if ((value.slot & region_mask) != 0) continue;
         const std::uint32_t slots = std::max(value.slots, 1U);
@@ -147,22 +118,19 @@ void save(Writing& w, const Location& frame, const Expression& e, Slot kept,
         copy(w, {Mode::slot, aside}, {Mode::slot, value.slot}, slots);
         value.slot = aside;
     }
-    w.place = e.place;
-    w.put(Op::save_frame, kept, w.routine_number(routine), frame.index);
-    if (routine.mark != 0) store(w, behind(frame, routine.mark), w.constant_slot(0));
 }
 
-/// Inputs and references, and what is left out. Gives what is to be written back. `kept`: the slot
-/// for the address of what a method in a ring keeps.
+/// Inputs and references, and what is left out. Gives what is to be written back. `save`: before
+/// the call is given anything what runs already is kept; all that is given is known then.
 std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
-                       const Routine& routine, Slot kept = none) {
+                       const Routine& routine, const std::function<void()>& save = {}) {
     const auto is_given = [](const Argument& argument) {
         const Section section = argument.variable->section;
         return !argument.is_left_out &&
                (section == Section::input || section == Section::in_out || is_set(argument));
     };
     give_left_out(w, frame, e);
-    const bool nested = kept != none || std::ranges::any_of(e.arguments, [&](const Argument& a) {
+    const bool nested = save || std::ranges::any_of(e.arguments, [&](const Argument& a) {
                             return is_given(a) && has_call(*a.value);
                         });
     std::vector<Later> later;
@@ -173,7 +141,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
         const Type& type = *variable.type;
         const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
-            refer(w, e, to, variable, *argument.value, later, lent);
+            refer(w, to, variable, *argument.value, later, lent);
         } else if (!nested) {
             assign(w, to, type, *argument.value);
         } else if (type.is_scalar()) {
@@ -185,7 +153,12 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
             assign(w, {Mode::slot, later.back().slot}, type, *argument.value);
         }
     }
-    if (kept != none) save(w, frame, e, kept, later);
+    if (save) {
+        put_aside(w, later);
+        save();
+        for (Later& value : later)
+            if (value.is_lent) value.slot = w.emit(Op::lent, none, value.slot);
+    }
     give(w, later);
     if (routine.has_instances()) return lent;
     for (const Variable& variable : routine.variables) {
@@ -259,19 +232,6 @@ std::vector<Lent> give_and_call(Writing& w, const Location& frame, const Express
     return lent;
 }
 
-/// The instance says which routine that is, and where its parameters are.
-Location find_and_call(Writing& w, const Expression& e, Slot instance) {
-    const Slot found = w.new_temporary(2);
-    w.place = e.place;
-    w.put(Op::find_routine, found, instance, method_number(w, *e.routine));
-    const Location frame{Mode::address, 0, e.routine->owner ? found + 1 : instance};
-    const std::vector<Lent> lent = give(w, frame, e, *e.routine);
-    w.place = e.place;
-    w.put(Op::call_found, instance, found);
-    take(w, frame, e, lent);
-    return frame;
-}
-
 /// Its address, in a slot that stays while arguments are computed.
 Slot address_of_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
@@ -285,22 +245,60 @@ Slot address_of_instance(Writing& w, const Expression& e) {
     return to;
 }
 
-/// On a frame of its own, or with what the method that may run has in its own kept.
-Location call_in_ring(Writing& w, const Expression& e) {
-    const Routine& routine = *e.routine;
-    const bool is_function = routine.is_function();
-    const Slot made = w.new_temporary();
+/// Behind the call of a method or a body that may have run already. Gives where its results are.
+Slot swap(Writing& w) {
+    return w.emit(Op::swap_frame, none, 0);
+}
+
+/// The instance says which routine that is, and where its parameters are.
+Location find_and_call(Writing& w, const Expression& e, Slot instance) {
+    const Slot found = w.new_temporary(2);
     w.place = e.place;
-    if (is_function) w.put(Op::push_frame, made, w.routine_number(routine));
-    const Slot at = is_function ? made : address_of_instance(w, e);
+    w.put(Op::find_routine, found, instance, method_number(w, *e.routine));
+    const bool is_method = e.routine->owner != nullptr, meets = may_meet_itself(w, e);
+    Location frame{Mode::address, 0, is_method ? found + 1 : instance};
+    const auto save = [&] {
+        w.place = e.place;
+        w.put(Op::save_found, 0, found, instance);
+    };
+    const std::vector<Lent> lent =
+        meets ? give(w, frame, e, *e.routine, save) : give(w, frame, e, *e.routine);
+    w.place = e.place;
+    w.put(Op::call_found, instance, found);
+    if (meets) {
+        const Slot results = swap(w);
+        if (is_method) frame.index = results;
+    }
+    take(w, frame, e, lent);
+    if (meets) w.put(Op::pop_frame);
+    return frame;
+}
+
+/// A function, on a frame of its own.
+Location call_on_pile(Writing& w, const Expression& e) {
+    const Slot at = w.new_temporary();
+    w.place = e.place;
+    w.put(Op::push_frame, at, w.routine_number(*e.routine));
+    const Location frame{Mode::address, 0, at};
+    const std::vector<Lent> lent = give_and_call(w, frame, e, *e.routine);
+    take(w, frame, e, lent);
+    w.put(Op::pop_frame);
+    return frame;
+}
+
+/// A method or a body of the instance at that address, with what runs there already kept.
+Location call_again(Writing& w, const Expression& e, Slot at) {
+    const Routine& routine = *e.routine;
     Location frame{Mode::address, 0, at};
-    const std::vector<Lent> lent = give(w, frame, e, routine, is_function ? none : made);
+    const auto save = [&] {
+        w.place = e.place;
+        w.put(Op::save_frame, 0, w.routine_number(routine), at);
+    };
+    const std::vector<Lent> lent = give(w, frame, e, routine, save);
     w.place = e.place;
     w.put(Op::call_at, at, w.routine_number(routine));
-    if (!is_function) {
-        w.put(Op::swap_frame);
-        frame = {Mode::address, 0, made, 0 - routine.kept_from()};
-    }
+    const Slot results = swap(w);
+    if (routine.owner) frame = {Mode::address, 0, results, 0 - routine.first};
     take(w, frame, e, lent);
     w.put(Op::pop_frame);
     return frame;
@@ -326,8 +324,9 @@ Slot call(Writing& w, const Expression& e, Slot wanted) {
 Location call_routine(Writing& w, const Expression& e) {
     const Routine& routine = *e.routine;
     if (e.is_dispatched) return find_and_call(w, e, address_of_instance(w, e));
-    if (recurs(w, e)) return call_in_ring(w, e);
     const bool is_function = routine.is_function();
+    if (may_meet_itself(w, e))
+        return is_function ? call_on_pile(w, e) : call_again(w, e, address_of_instance(w, e));
     Location frame =
         is_function ? Location{Mode::slot, Region::window} : on_frame(w, method_base(w, e));
     const std::vector<Lent> lent = give_and_call(w, frame, e, routine);
@@ -375,10 +374,10 @@ void call_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;
     const Location frame = on_frame(w, locate(w, callee));
-    if (e.is_dispatched) {
+    if (e.is_dispatched || (type.kind == Kind::block && may_meet_itself(w, e))) {
         const Slot instance = w.new_temporary();
         store(w, {Mode::slot, instance}, address_of(w, frame));
-        find_and_call(w, e, instance);
+        e.is_dispatched ? find_and_call(w, e, instance) : call_again(w, e, instance);
         return;
     }
     if (type.kind == Kind::block)

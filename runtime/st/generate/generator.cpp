@@ -31,9 +31,11 @@ void begin(Writing& w, Routine& routine) {
                                .levels = block->levels,
                                .mark = routine.mark});
     if (routine.ring != 0)
-        w.code.routines.back().variables = {routine.kept_from(), routine.variables_end};
+        w.code.routines.back().variables = {routine.owner ? routine.first : routine.temps_begin,
+                                            routine.variables_end};
+    w.code.routines.back().holds_instance = routine.holds_instance;
     w.place = routine.pou->place;
-    if (routine.mark != 0) w.put(Op::begin_once, routine.mark);
+    if (routine.mark != 0) w.put(Op::move, routine.mark, w.constant_slot(1));
     const bool in_function = routine.is_function();
     if (in_function || routine.temps_begin < routine.variables_end) {
         w.image_uses.push_back({w.next(), in_function ? nullptr : block->type, &routine});
@@ -142,7 +144,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         w.numbers[routine] = static_cast<std::uint32_t>(w.numbers.size());
     for (Routine* routine : w.checked.order) {
         if (!w.out.empty()) return {};
-        if (routine->ring != 0) lay_out_ring(w, routine->ring);
+        if (routine->plain_ring != 0) lay_out_ring(w, routine->plain_ring);
         write(w, *routine);
     }
     finish_dispatch(w);

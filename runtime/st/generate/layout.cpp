@@ -60,9 +60,9 @@ bool has_block(const Type& type) {
                                         }));
 }
 
-/// A slot that says that the routine runs, if it may meet itself.
+/// A slot that says that the routine runs.
 void place_mark(Routine& routine, std::uint32_t& at) {
-    if (routine.may_meet_itself && !routine.is_function()) routine.mark = at++;
+    if (routine.is_met && !routine.is_function()) routine.mark = at++;
 }
 
 }  // namespace
@@ -189,7 +189,7 @@ void lay_out_call(Writing& w, Routine& routine) {
 
 void lay_out_ring(Writing& w, int ring) {
     for (Routine* routine : w.checked.order) {
-        if (routine->ring != ring || w.laid_out.contains(routine)) continue;
+        if (routine->plain_ring != ring || w.laid_out.contains(routine)) continue;
         lay_out_call(w, *routine);
         w.laid_out.insert(routine);
         if (routine->owner) routine->owner->frame = routine->variables_end;

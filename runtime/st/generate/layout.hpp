@@ -64,8 +64,7 @@ constexpr std::uint32_t found_levels = 64;
 /// And those for calls that recur.
 constexpr std::uint32_t recurring_levels = 500;
 
-/// Which routines what they call may call again, by an instance; and the levels of calls that
-/// blocks have room for: those of a base and of what extends it are one.
+/// The levels of calls that blocks have room for: those of a base and of what extends it are one.
 void prepare_dispatch(Writing& w);
 
 /// Where a parameter of a method stands behind its `Routine::first`, the same in all that replace
@@ -76,6 +75,9 @@ const Writing::Image& signature_image(Writing& w, const Routine& method);
 
 /// The number that all methods share which may be found where this one is called; or bodies.
 std::uint32_t method_number(Writing& w, const Routine& called);
+
+/// A call within a ring of routines: what is called may run already.
+bool may_meet_itself(const Writing& w, const Expression& call);
 
 /// When all images are made: what runs calls that recur has room for them behind its frame.
 void finish_recursion(Writing& w);

@@ -159,6 +159,12 @@ Routine* find_method(const Routine& block, const Routine& like) {
     return found == several->end() ? nullptr : *found;
 }
 
+const Routine* find_routine(const Routine& block, const Routine& wanted) {
+    const bool is_body = !wanted.owner;
+    if (!is_a(block, is_body ? wanted : *wanted.owner)) return nullptr;
+    return is_body ? &block : find_method(block, wanted);
+}
+
 bool is_a(const Routine& block, const Routine& other) {
     if (&block == &other || (block.base && is_a(*block.base, other))) return true;
     return std::ranges::any_of(block.interfaces,

@@ -248,12 +248,17 @@ struct Routine {
     Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
     Variable* begun = nullptr;            ///< of a block: that the first was done
     std::vector<Called> calls = {};
+    std::vector<const Routine*> finds = {};  ///< as its calls name what instances find
     bool is_looped = false;  ///< calls of it through references are found by the instance
     int ring = 0;  ///< of routines that call one another in a ring: the number of that; else 0
+    int plain_ring = 0;             ///< and by calls that no instance finds
+    bool is_met = false;            ///< in its ring is a call that an instance finds
+    bool runs_rings = false;        ///< it is in a ring, or calls what may be
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
     enum class State : std::uint8_t { fresh, visiting, done } state = State::fresh;
 
-    bool lends = false;  ///< something refers to a variable of its calls
+    bool lends = false;           ///< something refers to a variable of its calls
+    bool holds_instance = false;  ///< of its calls, which is not put aside
 
     const Variable *mock_flag = nullptr, *mock_value = nullptr;  ///< of a function: MOCK_FUNCTION
 
@@ -275,11 +280,8 @@ struct Routine {
     std::uint32_t levels = 0;         ///< that its instance has room for, of a block
     std::uint32_t first = 0;          ///< of a method: slot of the first that is given to it
     std::uint32_t mark = 0;           ///< slot that says that it runs; 0: it has none
-    bool may_meet_itself = false;     ///< what it calls may call it, by the instance
-    bool may_recur = false;           ///< it is in a ring, or calls what may be
-
-    /// Of a method in a ring: the first slot that a call of it changes of another one.
-    std::uint32_t kept_from() const { return mark != 0 ? mark : first; }
+    bool may_dispatch = false;        ///< or what it calls
+    bool may_recur = false;           ///< it is in a plain ring, or calls what may be
 };
 
 /// Of a block: its variables, those of its bases first.
@@ -288,6 +290,8 @@ std::vector<Variable*> all_variables(const Routine& block);
 std::string signature_of(const Pou& routine);
 /// The method of the block that is called as `like`, one of another block, is; null: it has none.
 Routine* find_method(const Routine& block, const Routine& like);
+/// What of the block stands for a method or a body, which it has or inherits; null: nothing.
+const Routine* find_routine(const Routine& block, const Routine& wanted);
 /// The block is the other one, or derives from it; the block or interface implements it.
 bool is_a(const Routine& block, const Routine& other);
 
