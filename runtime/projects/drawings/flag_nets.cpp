@@ -58,6 +58,17 @@ std::vector<std::string_view> power_pins(std::string_view part) {
     return {"en", "pre"};
 }
 
+/// Whether the part is executed without a condition where nothing leads to its power pin.
+bool is_unconditional(std::string_view part) {
+    const std::vector<std::string_view> pins = power_pins(part);
+    return pins.empty() || is_any(pins.front(), {"en", "in"});
+}
+
+/// Whether an open connection leaves the pin out. Power that nothing stops is always there.
+bool is_left_out(std::string_view part, std::string_view pin) {
+    return !is_unconditional(part) || !std::ranges::any_of(power_pins(part), st::is_called(pin));
+}
+
 /// Whether what comes out there is power, and no value that a box writes.
 bool is_power(std::string_view part, std::string_view pin) {
     const std::string small = lower(part);
@@ -159,6 +170,7 @@ class FlagNet {
             const std::string id = plain(to, "UId");
             if (Piece* element = find(id)) {
                 const std::string pin = plain(to, "Name");
+                if (is_open(first) && is_left_out(element->part, pin)) continue;
                 element->inputs.push_back({pin, from, is_negated(*element, pin)});
                 if (output) output->takers.push_back(id);
             } else if (output && accesses_.contains(id)) {
@@ -166,6 +178,9 @@ class FlagNet {
             }
         }
     }
+
+    /// Nothing stands there: a call leaves the pin out, and what it had stays.
+    static bool is_open(pugi::xml_node end) { return std::string_view(end.name()) == "OpenCon"; }
 
     Piece* find(const std::string& id) {
         const auto found = elements_.find(id);
@@ -204,8 +219,9 @@ class FlagNet {
                          .formula = file_.plain(element.node.child("Equation")),
                          .place = place};
         set_callee(element, it);
-        Value power = always(place);
         const std::vector<std::string_view> pins = power_pins(element.part);
+        Value power =
+            is_unconditional(element.part) ? always(place) : words("FALSE", place, "BOOL");
         for (std::size_t i = 0; i < values.size(); ++i) {
             const Input& input = element.inputs[i];
             if (std::ranges::any_of(pins, st::is_called(input.pin)))

@@ -215,7 +215,7 @@ Value return_coil(Running& r) {
 Value flip_flop(Running& r, bool set_wins) {
     const bool is_box = !r.it.callee.is_empty();
     const Value state = is_box ? r.it.callee : r.operand("operand");
-    const Value other = is_box ? r.operand("operand") : Value{};
+    const Value other = is_box ? r.operand("operand") : r.word("FALSE");
     const auto input = [&](std::string_view name, std::string_view with_one, bool wins) {
         for (const std::string_view pin : {name, with_one})
             if (const auto* found = r.it.find(pin); found && !found->name.empty())

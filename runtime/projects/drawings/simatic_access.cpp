@@ -60,6 +60,7 @@ Excerpts SimaticAccess::text_of(pugi::xml_node access) const {
     for (const char* call : {"CallInfo", "Instruction"})
         if (const auto called = access.child(call)) write_call(made, called);
     if (const auto expression = access.child("Expression")) write_tokens(made, expression);
+    if (const auto type = access.child("DataType")) file_.copy(made, type);
     return made;
 }
 
@@ -96,10 +97,14 @@ void SimaticAccess::write_token(Excerpts& to, pugi::xml_node token) const {
     }
 }
 
-/// `#` before a local name; a global one stands in quotes. Dots are there as tokens, or not at all.
+/// `#` before a local name; a global one stands in quotes. Dots are there as tokens, or not at all;
+/// a slice is a token, or a modifier.
 void SimaticAccess::write_components(Excerpts& to, pugi::xml_node symbol, bool is_local) const {
     bool is_first = true;
-    for (const pugi::xml_node part : symbol.children("Component")) {
+    for (const pugi::xml_node part : symbol.children()) {
+        if (const std::string slice = file_.plain(part.attribute("Text")); slice.starts_with('%'))
+            to.write("." + slice, place(part));
+        if (!is_called(part, "Component")) continue;
         const std::string name = file_.plain(part.attribute("Name"));
         if (!is_first) to.write(".", place(part));
         if (is_first && is_local) to.write("#", place(part));

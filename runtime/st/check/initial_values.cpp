@@ -18,6 +18,13 @@ bool is_constant_place(Checking& c, const Expression& place) {
     return !place.operands[0] || is_constant_place(c, *place.operands[0]);
 }
 
+/// A path begins at the data block itself, whatever else has the name of its member.
+void begin_at_member(Expression& path, const Routine& parts) {
+    Expression* first = &path;
+    while (first->operands[0]) first = first->operands[0];
+    if (find_in(parts.names, first->token.text)) first->token.quoted = false;
+}
+
 /// What stands behind BEGIN of a data block: assignments of constants to its parts.
 void check_data_block(Checking& c, const Global& global) {
     if (!global.pou || !global.type) return;
@@ -32,6 +39,7 @@ void check_data_block(Checking& c, const Global& global) {
                    "assign constants, and write statements in a block");
             continue;
         }
+        begin_at_member(*s->target, parts);
         const Type* type = check(c, s->target);
         if (!is_constant_place(c, *s->target))
             c.fail(code::not_a_constant, s->target->place, "the index is not a constant");
