@@ -76,6 +76,18 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.ErrorDetail".Number := TO_UDINT(axis.error_id);
 END_FUNCTION
 
+FUNCTION "AXIS_REF.WarningWord" : DWORD
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.WarningWord" := 0;
+END_FUNCTION
+
+TYPE "AXIS_REF.HomingOf" : STRUCT HomePosition : LREAL; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.Homing" : "AXIS_REF.HomingOf"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Homing".HomePosition := 0.0;
+END_FUNCTION
+
 TYPE "AXIS_REF.Overrides" : STRUCT Velocity : LREAL; END_STRUCT END_TYPE
 
 FUNCTION "AXIS_REF.Override" : "AXIS_REF.Overrides"
