@@ -45,6 +45,30 @@ namespace lineshaft {
 
 namespace {
 
+/// Instructions of S7-1500 and S7-1500T for which there is no block.
+void lack_of_siemens(Catalog& blocks) {
+    for (const char* torque : {"MC_TorqueLimiting", "MC_TorqueRange", "MC_TorqueAdditive"})
+        blocks.lack(torque,
+                    "an axis is led by its position here and has no torque: wire a servo_drive, "
+                    "whose mechanics have forces");
+    for (const char* probe : {"MC_MeasuringInput", "MC_MeasuringInputCyclic"})
+        blocks.lack(probe, "take MC_TouchProbe, whose trigger is a signal");
+    blocks.lack("MC_AbortMeasuringInput", "take MC_AbortTrigger, which ends MC_TouchProbe");
+    for (const char* cam : {"MC_OutputCam", "MC_CamTrack"})
+        blocks.lack(cam, "take MC_DigitalCamSwitch, which has several cams and tracks");
+    for (const char* drive : {"MC_SetAxisSTW", "MC_SaveAbsoluteEncoderData", "MC_SetSensor"})
+        blocks.lack(drive, "leave it out: an axis has no control word and no encoders here");
+    blocks.lack("MC_GearInVelocity", "take MC_GearIn, which couples velocities");
+    for (const char* offset : {"MC_OffsetRelative", "MC_OffsetAbsolute"})
+        blocks.lack(offset, "take MC_MoveSuperimposed, which adds a distance to the slave's way");
+    blocks.lack("MC_LeadingValueAdditive", "take MC_CombineAxes, which adds a second master");
+    blocks.lack("MC_MotionInVelocity",
+                "take MC_MoveVelocity, or MC_MotionInPosition with set-points of the program");
+    blocks.lack("MC_MotionInSuperimposed", "take MC_MoveSuperimposed");
+    for (const char* cam : {"MC_InterpolateCam", "MC_CopyCamData"})
+        blocks.lack(cam, "write the points of the cam as a cam_table in the program");
+}
+
 Catalog make_catalog() {
     Catalog blocks;
     blocks.add<ServoDrive>();
@@ -173,6 +197,7 @@ Catalog make_catalog() {
                     "an axis is led by its position here and has no torque: move it with "
                     "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
                     "mechanics have forces");
+    lack_of_siemens(blocks);
     blocks.add_libraries(vendor_libraries());
     return blocks;
 }

@@ -145,6 +145,7 @@ void Axis::start(const Scan& now) {
     goal = start_position;
     hold({.position = start_position}, {now.time});
     base.position = start_position;
+    position = modulo ? within_period(start_position, period) : start_position;
 }
 
 void Axis::wake_up(std::int64_t now) {

@@ -215,7 +215,14 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     relocated += by;
     goal += by;
     origin += by;
-    if (queue.first != nowhere) blend_anew(context, at);
+    const bool homes = request.holds != 0;
+    homed = homed || homes;
+    if (homes && active.exists() && active.request.command == Command::move_absolute) {
+        goal -= by;
+        replan(context, at);
+    } else if (queue.first != nowhere) {
+        blend_anew(context, at);
+    }
     return MotionError::none;
 }
 

@@ -76,6 +76,18 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.ErrorDetail".Number := TO_UDINT(axis.error_id);
 END_FUNCTION
 
+FUNCTION "AXIS_REF.WarningWord" : DWORD
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.WarningWord" := 0;
+END_FUNCTION
+
+TYPE "AXIS_REF.HomingOf" : STRUCT HomePosition : LREAL; END_STRUCT END_TYPE
+
+FUNCTION "AXIS_REF.Homing" : "AXIS_REF.HomingOf"
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Homing".HomePosition := 0.0;
+END_FUNCTION
+
 TYPE "AXIS_REF.Overrides" : STRUCT Velocity : LREAL; END_STRUCT END_TYPE
 
 FUNCTION "AXIS_REF.Override" : "AXIS_REF.Overrides"
@@ -115,42 +127,6 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.DynamicDefaults".EmergencyDeceleration := axis.default_deceleration;
     "AXIS_REF.DynamicDefaults".Jerk := axis.default_jerk;
 END_FUNCTION
-
-FUNCTION_BLOCK MC_MoveJog
-VAR_INPUT
-    Axis : AXIS_REF;
-    JogForward, JogBackward : BOOL;
-    Velocity : LREAL := 100.0;
-    Acceleration, Deceleration, Jerk : LREAL := -1.0;
-    PositionControlled : BOOL := TRUE;
-END_VAR
-VAR_OUTPUT InVelocity, Busy, CommandAborted, Error : BOOL; ErrorId : WORD; END_VAR
-VAR move : MC_MoveVelocity; halt : MC_Halt; jogs, jogged : BOOL; END_VAR
-    jogs := JogForward XOR JogBackward;
-    move.Jogs := 1;
-    move(Axis := Axis, Execute := jogs, ContinuousUpdate := TRUE,
-         Velocity := SEL(JogForward, -ABS(Velocity), ABS(Velocity)),
-         Acceleration := Acceleration, Deceleration := Deceleration, Jerk := Jerk);
-    IF jogged AND NOT jogs THEN
-        halt(Axis := Axis, Execute := NOT move.CommandAborted AND NOT move.Error,
-             Deceleration := Deceleration, Jerk := Jerk);
-    ELSE
-        halt(Axis := Axis, Execute := halt.Busy);
-    END_IF;
-    jogged := jogs;
-    InVelocity := move.InVelocity;
-    Busy := jogs AND move.Busy OR halt.Busy;
-    CommandAborted := jogs AND move.CommandAborted OR halt.CommandAborted;
-    Error := jogs AND move.Error OR halt.Error OR JogForward AND JogBackward;
-    ErrorId := 0;
-    IF jogs AND move.Error THEN
-        ErrorId := TO_WORD(TO_UINT(move.ErrorID));
-    ELSIF halt.Error THEN
-        ErrorId := TO_WORD(TO_UINT(halt.ErrorID));
-    ELSIF JogForward AND JogBackward THEN
-        ErrorId := 16#8007;  // Siemens: incorrect direction
-    END_IF;
-END_FUNCTION_BLOCK
 )";
 
 }  // namespace lineshaft

@@ -12,10 +12,16 @@ constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcO
 }  // namespace
 
 std::span<const Field> SetPosition::fields() {
-    static const auto table = pin::table(
-        {pin::position("of the place where the axis is"),
-         input("Relative", &SetPosition::relative, "", "Position is added"), pin::execution_mode()},
-        pin::done("the position is set"));
+    static const auto table = [] {
+        auto made = pin::table({pin::position("of the place where the axis is"),
+                                input("Relative", &SetPosition::relative, "", "Position is added"),
+                                pin::execution_mode()},
+                               pin::done("the position is set"));
+        made.push_back(local("Homes", &CommandBlock::pins, &Request::holds, "",
+                             "1: the position is known then, and an absolute move goes to its "
+                             "Position as it is now, as Siemens homes"));
+        return made;
+    }();
     return table;
 }
 

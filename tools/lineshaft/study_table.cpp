@@ -118,10 +118,13 @@ std::string study_table(const Study& study, const StudyReport& report, TableStyl
 
 std::string first_failure(const StudyReport& report) {
     const auto text = [](const std::string& what, double ours, const Bounds& bounds, bool percent) {
-        return fmt::format(
-            "{} is {}; paper {}, limit {}", what, short_number(ours, percent),
-            bounds.paper ? short_number(*bounds.paper, percent) : "none",
-            bounds.at_least || bounds.at_most ? limit_text(bounds, percent) : "none");
+        std::string said = fmt::format("{} is {}", what, short_number(ours, percent));
+        if (bounds.paper) said += fmt::format("; paper {}", short_number(*bounds.paper, percent));
+        if (!bounds.within.empty())
+            said +=
+                fmt::format(", within {}", short_number(std::ranges::max(bounds.within), percent));
+        if (has_limit(bounds)) said += fmt::format("; limit {}", limit_text(bounds, percent));
+        return said;
     };
     for (const StudyRow& row : report.rows) {
         if (row.ok) continue;

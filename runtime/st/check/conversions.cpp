@@ -88,6 +88,13 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     return true;
 }
 
+/// As it is written: of a pin of the catalogue, `MC_Home.HomingMode`, without that.
+std::string first_value(const Checking& c, const Type& type) {
+    const std::string& value = type.values.front();
+    const bool is_of_pin = c.catalog.find(type.name.substr(0, type.name.find('.'))) != nullptr;
+    return is_of_pin ? value : fmt::format("{}#{}", type.name, value);
+}
+
 /// Siemens gives a number where PLCopen has a name: `Direction := 1`.
 bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     if (!is_constant(*e)) return convert(c, e, to);
@@ -97,10 +104,9 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
                                : to.all_others_as_last ? to.of_number.back()
                                                        : -1;
     if (value < 0)
-        return c.fail(
-            code::value_out_of_range, e->place,
-            fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
-            fmt::format("write one of its values, such as {}#{}", to.name, to.values.front()));
+        return c.fail(code::value_out_of_range, e->place,
+                      fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
+                      fmt::format("write one of its values, such as {}", first_value(c, to)));
     return become(c, e, to, {.integer = value});
 }
 
@@ -207,7 +213,7 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";
     if (to.kind == Kind::boolean && from.is_number()) help = "compare it, as in 'x <> 0'";
     if (to.kind == Kind::enumeration && !to.values.empty())
-        help = fmt::format("write one of its values, such as {}#{}", to.name, to.values.front());
+        help = fmt::format("write one of its values, such as {}", first_value(c, to));
     if (from.kind == Kind::time && to.is_number())
         help = fmt::format("write TIME_TO_{}(...)", to.is_any() ? "LREAL" : to.plain().name);
     if (from.kind == Kind::enumeration && to.kind == Kind::integer)

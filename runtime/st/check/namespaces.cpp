@@ -1,5 +1,7 @@
 #include "runtime/st/check/namespaces.hpp"
 
+#include <limits>
+
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/statements.hpp"
@@ -64,6 +66,15 @@ const Expression* root_of(Checking& c, const Expression& member) {
     return is_free ? root : nullptr;
 }
 
+/// Sources in SCL use it without saying so.
+void open_siemens_motion(Checking& c) {
+    static const Scope whole_source = {.end = std::numeric_limits<std::uint32_t>::max()};
+    if (!is_namespace(c, siemens_motion)) return;
+    for (const auto& source : c.tree.sources)
+        if (&source->dialect == &scl)
+            c.prefixes[source.get()].push_back({&whole_source, {siemens_motion}});
+}
+
 }  // namespace
 
 void collect_namespaces(Checking& c) {
@@ -107,6 +118,7 @@ void collect_namespaces(Checking& c) {
             }
         }
     }
+    open_siemens_motion(c);
 }
 
 Token name_with_namespace(Checking& c, Token declared) {

@@ -263,8 +263,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool is_siemens_own =
         is_block && target.place.dialect().sets_variables_of_instances &&
         (variable->section == Section::local || variable->section == Section::output);
-    const bool is_public =
-        variable->section == Section::local && variable->access == Access::public_;  // 6.6.5.10
+    const bool is_local = variable->section == Section::local;
+    const bool is_public = is_local && (variable->access == Access::public_ ||  // 6.6.5.10
+                                        (is_library(target.token) && of && !is_block));
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
         is_named && !is_siemens_own && !is_public)
         return refuse(fmt::format("'{}' of {}", variable->text, of->name),

@@ -18,6 +18,7 @@ namespace lineshaft::st {
 struct LibraryNames::Index {
     NameMap<std::vector<const LibraryFile*>> by_name;  ///< those that are looked for
     NameMap<const LibraryFile*> by_full_name;
+    NameMap<const LibraryFile*> of_siemens;  ///< that Siemens' sources name without their library
     NameSet of_catalog;  ///< names that are not looked for unless their library is taken
     NameMap<std::vector<const LibraryFile*>> libraries;
     NameSet firsts;  ///< what the libraries' names begin with, up to a point
@@ -83,6 +84,7 @@ LibraryNames::Index make_index(const Catalog& catalog) {
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
+            if (file.library == siemens_motion) index.of_siemens.emplace(name, &file);
             if (is_open(file) && !is_everyday(name)) index.by_name[name].push_back(&file);
         }
     }
@@ -175,9 +177,15 @@ void LibraryNames::note_libraries(const Tokens& tokens) {
 }
 
 void LibraryNames::note(const Token& name) {
-    const auto it = index_.by_name.find(name.text);
     const bool is_plain = !name.quoted && !name.local && name.place.source;
-    if (it == index_.by_name.end() || !is_plain || &name.place.dialect() == &scl) return;
+    if (!is_plain) return;
+    if (&name.place.dialect() == &scl || reading_ == siemens_motion) {
+        const auto own = index_.of_siemens.find(name.text);
+        if (own != index_.of_siemens.end()) of_siemens_.insert(own->first);
+        return;
+    }
+    const auto it = index_.by_name.find(name.text);
+    if (it == index_.by_name.end()) return;
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
@@ -223,16 +231,28 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
     }
 }
 
+/// That libraries have, as they write it; empty: none.
+std::string_view LibraryNames::block_of(const Declaration& declared) const {
+    if (!declared.type) return {};
+    const Token& name = declared.type->name;
+    const bool is_of_siemens = name.place.source && &name.place.dialect() == &scl;
+    if (is_of_siemens) {
+        const auto it = index_.of_siemens.find(name.text);
+        return it == index_.of_siemens.end() ? std::string_view() : it->first;
+    }
+    const auto it = index_.by_name.find(name.text);
+    return it == index_.by_name.end() ? std::string_view() : it->first;
+}
+
 void LibraryNames::note_pins(const Tree& tree) {
     NameMap<std::string_view> instances;
     for (const Declaration& declared : tree.declarations) {
-        const auto it =
-            declared.type ? index_.by_name.find(declared.type->name.text) : index_.by_name.end();
-        if (it == index_.by_name.end()) continue;
-        instances.emplace(declared.name.text, it->first);
+        const std::string_view block = block_of(declared);
+        if (block.empty()) continue;
+        instances.emplace(declared.name.text, block);
         if (!declared.initial) continue;
         for (const Argument& argument : declared.initial->arguments)
-            if (argument.is_named()) pins_[it->first].insert(argument.name.text);
+            if (argument.is_named()) pins_[block].insert(argument.name.text);
     }
     if (instances.empty()) return;
     for (const Expression& e : tree.expressions) {
@@ -309,6 +329,11 @@ void LibraryNames::take_named() {
         for (const std::string_view name : names_)
             if ((index_.by_name.at(name).size() == 1) == has_one)
                 if (const LibraryFile* file = choose(name)) take(*file);
+    for (const std::string_view name : of_siemens_) {
+        const LibraryFile& file = *index_.of_siemens.at(name);
+        const auto named = pins_of(file, name);
+        if (!named || *named >= pins_of_catalog(name)) take(file);
+    }
 }
 
 void LibraryNames::read(const LibraryFile& file, Tree& tree, Diagnostics& out) {
@@ -326,11 +351,12 @@ void LibraryNames::read(const LibraryFile& file, Tree& tree, Diagnostics& out) {
 void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
     if (catalog_.libraries().empty()) return;
     note_names(tree, true);
-    if (names_.empty() && said_.empty()) return;
+    if (names_.empty() && said_.empty() && of_siemens_.empty()) return;
     note_pins(tree);
     own_ = declared_namespaces(tree);
-    std::erase_if(names_,
-                  [declared = declared_names(tree)](auto name) { return declared.contains(name); });
+    const NameSet declared = declared_names(tree);
+    for (auto* names : {&names_, &of_siemens_})
+        std::erase_if(*names, [&](std::string_view name) { return declared.contains(name); });
     std::set<const LibraryFile*> is_read;
     for (std::size_t before = 1; before != taken_.size() + taken_libraries_.size();) {
         before = taken_.size() + taken_libraries_.size();

@@ -21,13 +21,15 @@ namespace lineshaft::st {
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
 ///   all;
+///   - for a name in SCL that Siemens' motion library has, unless the sources name more pins of it
+///     that the catalogue's block has;
 ///   - for a name that a taken file uses: of its own library, if that has it.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
 /// block that has nothing of what they name of theirs is not meant. Names of a library that is not
-/// open, and of helpers, which begin with a small letter, are not looked for, nor names in SCL, nor
-/// what is the name of a variable everywhere. A library whose namespace the sources declare
-/// themselves is theirs.
+/// open, and of helpers, which begin with a small letter, are not looked for, nor other names in
+/// SCL, nor what is the name of a variable everywhere. A library whose namespace the sources
+/// declare themselves is theirs.
 class LibraryNames {
   public:
     explicit LibraryNames(const Catalog& catalog);
@@ -50,6 +52,7 @@ class LibraryNames {
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
+    std::string_view block_of(const Declaration& declared) const;
     std::optional<std::size_t> pins_of(const LibraryFile& file, std::string_view name) const;
     std::size_t pins_of_catalog(std::string_view name) const;
     const LibraryFile* choose(std::string_view name) const;
@@ -61,7 +64,7 @@ class LibraryNames {
     const Catalog& catalog_;
     const Index& index_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
-    std::set<std::string_view> names_, of_twincat_;       ///< as libraries write them
+    std::set<std::string_view> names_, of_twincat_, of_siemens_;  ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
     std::set<std::string_view> said_;           ///< libraries, and names in full
     std::string_view reading_;                  ///< the library whose file is looked at

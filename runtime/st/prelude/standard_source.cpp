@@ -61,7 +61,6 @@ bool uses_source_of(const BlockType& type, const Tokens& tokens) {
     if (text.empty()) return false;
     NameSet said;
     add_names(said, text, "FUNCTION \"" + std::string(type.handle) + '.', "\"");
-    add_names(said, text, "FUNCTION_BLOCK ", "\n");
     return std::ranges::any_of(tokens.tokens, [&](const Token& token) {
         return token.word == Word::name && said.contains(token.text);
     });

@@ -17,7 +17,7 @@ bool uses_standard_source(const Tokens& tokens);
 /// What a kind of the catalogue says in Structured Text.
 std::shared_ptr<const SourceFile> source_of(const BlockType& type);
 
-/// A source has a name of a part or of a block that `type` says.
+/// A source has a name of a part that `type` says.
 bool uses_source_of(const BlockType& type, const Tokens& tokens);
 
 }  // namespace lineshaft::st

@@ -30,6 +30,9 @@ constexpr Instead functions_of_vendors[] = {
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
     {" s_move ", "assign the STRING with ':='"},
     {" join ", "write CONCAT(a, b, ...)"},
+    {" topositioningaxisref tosynchronousaxisref tospeedaxisref asaxisref ",
+     "declare the axis as VAR_IN_OUT of type TO_PositioningAxis: no number of a data block names "
+     "one here"},
     {" wait ", "count the time with a TON"},
     {" stp ", "end the run with 'run: {until: ...}' in the program"},
     {" re_trigr ", "leave it out: 'maximum_cycle_time' says how long a scan may last"},

@@ -32,6 +32,9 @@ bool is_vendor_library(std::string_view name);
 /// in its name, or `{attribute 'qualified_only'}` before all.
 bool is_open(const LibraryFile& file);
 
+/// Whose names sources in SCL have without it, as they have the instructions of STEP 7.
+inline constexpr std::string_view siemens_motion = "Siemens.Simatic.S71500.MotionControl.Native";
+
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
 

@@ -183,9 +183,9 @@ TEST_CASE("faults and failed expectations stand below the table") {
 TEST_CASE("the first failure is a row before a claim, in one line") {
     Example e;
     CHECK(first_failure(e.report) ==
-          "fit.offset, method early, speed 10 mm/s is 6; paper 4, limit none");
+          "fit.offset, method early, speed 10 mm/s is 6; paper 4, within 0.5");
     e.report.rows[1].ok = true;
-    CHECK(first_failure(e.report) == "falls by is 65.0 %; paper 50.0 %, limit none");
+    CHECK(first_failure(e.report) == "falls by is 65.0 %; paper 50.0 %, within 5.0 %");
     e.report.claims[0].ok = true;
     CHECK(first_failure(e.report).empty());
 }
