@@ -110,6 +110,17 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     return become(c, e, to, {.integer = value});
 }
 
+/// A number that no value has, which CODESYS lets a variable have: here a fault where it is
+/// reached.
+bool convert_to_none(Checking& c, Expression*& e, const Type& to) {
+    c.warn(code::value_out_of_range, e->place,
+           fmt::format("no value of {} is {}, and a fault comes where that is assigned", to.name,
+                       to_string(e->constant.integer)),
+           "declare a value for it");
+    e = make_converted(c, e, to);
+    return true;
+}
+
 /// An enumeration's value and its number stand for each other where the one is known to be one of
 /// the other, as CODESYS has it, which so takes values of another enumeration, too; false where
 /// nothing was done.
@@ -144,7 +155,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         return fits;
     }
     const auto it = std::ranges::find(to.numbers, e->constant.integer);
-    if (it == to.numbers.end()) return false;
+    if (it == to.numbers.end()) return are_numbers && c.routine && convert_to_none(c, e, to);
     return become(c, e, to, {.integer = it - to.numbers.begin()});
 }
 

@@ -16,14 +16,17 @@ Type& global_variables(Checking& c) {
     return const_cast<Type&>(*c.checked.globals.front().type);
 }
 
-/// `Trace : Trace;`, where CODESYS tells by the place which is meant.
+/// `Trace : Trace;`, where CODESYS tells by the place which is meant; before a PROGRAM the variable
+/// is.
 bool is_beside_a_type(Checking& c, const Token& name) {
     const Dialect& dialect = name.place.dialect();
     if (!(dialect.is_loose || dialect.capitals_count) || c.globals.contains(name.text))
         return false;
     const Routine* block = find_in(c.users.routines, name.text);
     const bool is_type = block && block->pou->kind == PouKind::function_block;
-    return is_type || (block && is_folder(*block->pou)) || c.users.types.contains(name.text);
+    const bool is_program = block && block->pou->kind == PouKind::program && dialect.is_loose;
+    return is_type || is_program || (block && is_folder(*block->pou)) ||
+           c.users.types.contains(name.text);
 }
 
 bool is_other_by_capitals(Checking& c, const Token& name) {

@@ -8,8 +8,11 @@ namespace lineshaft::st {
 
 namespace {
 
-/// As the dialect writes it.
-std::string text_in(const Dialect& dialect, const ImageAddress& address) {
+/// As the dialect writes it; what begins between two of its size, by its first byte.
+std::string text_in(const Dialect& dialect, ImageAddress address) {
+    const bool counts_bytes = dialect.addresses_count == AddressCount::bytes;
+    if (!counts_bytes && address.bits > 8 && address.byte % (address.bits / 8U) != 0)
+        address.bits = 8;
     return text_of(address, dialect.addresses_count);
 }
 
@@ -52,22 +55,36 @@ void put(Checking& c, Variable& variable, const ImageAddress& address) {
     image.variables.push_back(&variable);
 }
 
+/// CODESYS begins a number of any size at a byte, and has a BOOL that is no bit of its own in the
+/// first bit of it. False: the prefix is of another size, and this was told.
+bool takes_size(Checking& c, const Variable& variable, ImageAddress& address, const Token& at) {
+    const Type& type = *variable.type;
+    const bool is_bit = type.kind == Kind::boolean;
+    const std::uint64_t bits = is_bit ? 1 : packed_bits(type, at.place.dialect());
+    if (type.is_scalar() ? bits == address.bits : address.bits != 1) return true;
+    const std::string what =
+        fmt::format("'{}' is of {}, and {} has {} bit{}", variable.text, describe(type), at.text,
+                    static_cast<int>(address.bits), address.bits == 1 ? "" : "s");
+    const std::string_view help =
+        "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin at a "
+        "byte";
+    const Dialect& dialect = at.place.dialect();
+    if (address.bits == 1 || !dialect.is_loose || dialect.addresses_of_sizes_are_apart)
+        return c.fail(code::type_does_not_fit, at.place, what, std::string(help));
+    c.warn(code::type_does_not_fit, at.place, what, std::string(help));
+    address.bits = static_cast<std::uint8_t>(bits);
+    return true;
+}
+
 /// Of the bits that a variable has there.
-bool fits(Checking& c, const Variable& variable, const ImageAddress& address, const Token& at) {
+bool fits(Checking& c, const Variable& variable, ImageAddress& address, const Token& at) {
     const Type& type = *variable.type;
     const std::uint64_t bits = packed_bits(type, at.place.dialect());
     if (bits == 0)
         return c.fail(code::type_does_not_fit, at.place,
                       fmt::format("{} stands at no address", describe(type)),
                       "numbers, times, texts, and structures and arrays of such do");
-    const bool is_bit = type.kind == Kind::boolean;
-    if (type.is_scalar() ? (is_bit ? 1 : bits) != address.bits : address.bits == 1)
-        return c.fail(
-            code::type_does_not_fit, at.place,
-            fmt::format("'{}' is of {}, and {} has {} bit{}", variable.text, describe(type),
-                        at.text, static_cast<int>(address.bits), address.bits == 1 ? "" : "s"),
-            "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin "
-            "at a byte");
+    if (!takes_size(c, variable, address, at)) return false;
     if (address.byte + (bits + 7) / 8 <= longest_area) return true;
     return c.fail(code::value_out_of_range, at.place,
                   fmt::format("'{}' ends beyond its area", variable.text),

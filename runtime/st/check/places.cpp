@@ -72,6 +72,14 @@ const Type* check_named_bit(Checking& c, Expression*& e, const Type& type) {
     return &bool_type;
 }
 
+/// What there is once, however it is named: by THIS, by an instance, by a PROGRAM.
+const Type* use_only_one(Checking& c, Expression*& e) {
+    Expression* only = make_use(c, *e, *e->variable);
+    only->operands[0] = e->operands[0];  // that it is written from outside can be told
+    e = only;
+    return e->type;
+}
+
 /// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
 /// list.
 bool refuse_of_list(Checking& c, const Expression& e) {
@@ -117,8 +125,10 @@ const Type* check_member(Checking& c, Expression*& e) {
         const bool is_value = found->space == Space::constant;
         const bool is_own = type->kind == Kind::block && e->operands[0]->kind == E::self;
         const bool is_seen = is_own || c.is_in_test() || found->access == Access::public_;
-        if (is_value && (is_seen || e->place.dialect().is_loose))
+        if (is_value && (is_seen || e->place.dialect().is_loose)) {
+            found->used = true;
             return become(c, e, *found->type, found->value);
+        }
         if (type->kind == Kind::block && !is_own && (found->section == Section::temp || is_value))
             return c.fail(code::not_declared, e->token.place,
                           fmt::format("'{}' of {} is not seen from outside", name, type->name),
@@ -129,6 +139,7 @@ const Type* check_member(Checking& c, Expression*& e) {
         found->used = true;
         e->variable = found;
         if (found->space == Space::overlay) return use_overlay(c, e, *found);
+        if (found->space == Space::global && type->kind == Kind::block) return use_only_one(c, e);
         return found->type;
     }
     if (type->kind == Kind::array && same_name(name, "this")) {  // "Recipes".THIS[1]
@@ -243,10 +254,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     Variable* variable = target.variable;
     if (!variable) return false;
     if (variable->space == Space::image) variable->is_set = true;
-    const bool own =
-        target.kind == E::name || (target.kind == E::member && target.operands[0]->kind == E::self);
-    const bool of_instance = target.kind == E::member && target.operands[0]->type &&
-                             target.operands[0]->type->is_instance();
+    const bool own = !target.operands[0] || target.operands[0]->kind == E::self;
+    const bool of_instance =
+        !own && target.operands[0]->type && target.operands[0]->type->is_instance();
     if (variable->constant && !(c.is_in_test() && of_instance))
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
     const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
@@ -268,8 +278,11 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
                                         (is_library(target.token) && of && !is_block));
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
         is_named && !is_siemens_own && !is_public)
-        return refuse(fmt::format("'{}' of {}", variable->text, of->name),
-                      "only inputs of an instance are set from outside");
+        return refuse(
+            fmt::format("'{}' of {}",
+                        variable->space == Space::global ? target.token.text : variable->text,
+                        of->name),
+            "only inputs of an instance are set from outside");
     return of && of->is_instance() ? true : check_target(c, *target.operands[0], how);
 }
 

@@ -196,11 +196,38 @@ void rewrite_case_of_texts(Checking& c, Statement*& s) {
     check(c, s);
 }
 
+/// A number that no value of the enumeration has; CODESYS refuses it of one that is strict alone.
+bool is_of_no_value(Checking& c, Expression*& label, const Type& type) {
+    const bool is_literal = label && label->kind == E::constant && !label->type;
+    const Type* given = is_literal ? check(c, label, &type) : nullptr;
+    return given && given->kind == Kind::any_integer &&
+           std::ranges::find(type.numbers, label->constant.integer) == type.numbers.end();
+}
+
+/// Where a label is such a number, all of them are numbers.
+const Type* select_by_numbers(Checking& c, Statement& s, const Type& type) {
+    const bool are_numbers = s.place.dialect().enumerations_are_numbers && !type.is_strict;
+    if (!type.has_numbers || !are_numbers) return &type;
+    const auto is_there = [&](Branch& branch) {
+        return std::ranges::any_of(branch.labels, [&](auto& label) {
+            return is_of_no_value(c, label.first, type) || is_of_no_value(c, label.second, type);
+        });
+    };
+    if (std::ranges::none_of(s.branches, is_there)) return &type;
+    for (Branch& branch : s.branches)
+        for (auto& [from, to] : branch.labels)
+            for (Expression** label : {&from, &to})
+                if (*label && check(c, *label, &type)) enumeration_becomes_number(c, *label);
+    enumeration_becomes_number(c, s.value);
+    return s.value->type;
+}
+
 void check_case(Checking& c, Statement*& slot) {
     const Type* type = check(c, slot->value);
     if (type && type->kind == Kind::text && slot->value->place.dialect().selects_by_texts)
         return rewrite_case_of_texts(c, slot);
     Statement& s = *slot;
+    if (type) type = select_by_numbers(c, s, *type);
     const bool fits =
         type && (type->kind == Kind::integer || type->is_bits() || type->kind == Kind::enumeration);
     if (type && !fits)
@@ -252,8 +279,9 @@ void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
     for (Expression** bound : {&loop->value, &loop->limit})
         if (check(c, *bound, &type)) enumeration_becomes_number(c, *bound);
     loop->target = make_use(c, *slot->target, number);
-    loop->body = {
-        make_assignment(c, slot->target->place, slot->target, make_use(c, *slot->target, number))};
+    Expression* value = make_use(c, *slot->target, number);
+    convert(c, value, type);
+    loop->body = {make_assignment(c, slot->target->place, slot->target, value)};
     loop->body.insert(loop->body.end(), slot->body.begin(), slot->body.end());
     slot = loop;
 }

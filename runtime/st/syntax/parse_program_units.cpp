@@ -146,8 +146,14 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
     }
 }
 
+/// The attribute counts for the whole of a list, whose first section it stands before.
+bool goes_on_qualified(const Parsing& p) {
+    return p.last().word == Word::end_var_ && !p.tree.globals.empty() &&
+           p.tree.globals.back().is_qualified_only;
+}
+
 void parse_globals(Parsing& p) {
-    const bool is_qualified_only = has_attribute(p, p.at, "qualified_only");
+    const bool is_qualified_only = has_attribute(p, p.at, "qualified_only") || goes_on_qualified(p);
     DeclarationBlock block = parse_section(p, Section::global);
     const bool is_library = p.source->is_library() && p.scope;
     block.list = is_library ? p.scope->path : name_of_list(*p.source);
