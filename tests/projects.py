@@ -657,6 +657,22 @@ def check_openplc_editor():
     assert "drawn.fbd:1:1: error" in run("check", "editor4/", code=2)
 
 
+def check_openplc_files():
+    """One file with RESOURCE .. ON PLC has all of its folder read as OpenPLC's: words count words, INT_TO_TIME seconds."""
+    write("split/configuration.st", "CONFIGURATION Line\n  RESOURCE Res0 ON PLC\n    TASK task0(INTERVAL := T#20ms, PRIORITY := 0);\n"
+          "    PROGRAM instance0 WITH task0 : Counts;\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    write("split/globals.st", "VAR_GLOBAL\n  first AT %QW0 : INT;\n  second AT %QW1 : INT;\nEND_VAR\n")
+    write("split/counts.st", "PROGRAM Counts\nVAR_EXTERNAL first, second : INT; END_VAR\nVAR waited : TIME; END_VAR\n"
+          "first := 258;\nsecond := 772;\nwaited := INT_TO_TIME(5);\nEND_PROGRAM\n")
+    assert "L0926" not in run("check", "split")
+    run("new", "split", "--from", "split")
+    made = (work / "split.yaml").read_text()
+    (work / "split.yaml").write_text(re.sub("signals: .*", "signals: ['%QW0', '%QW1', Counts.waited]", made))
+    run("run", "split.yaml", "--trace", "split.csv")
+    values = (work / "split.csv").read_text().splitlines()[-1].split(",")[-3:]
+    assert values == ["258", "772", "5000000000"], values
+
+
 def check_lost_bases():
     """What a base that is not here would have is told by no message but the one of the library."""
     twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
@@ -913,6 +929,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_named_programs()
     check_qualified_names()
     check_openplc_editor()
+    check_openplc_files()
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()
