@@ -346,6 +346,34 @@ def check_automation_studio():
     assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
 
 
+PACKAGE = '<?xml version="1.0"?>\n<Package xmlns="http://br-automation.co.at/AS/Package">\n <Objects>\n{}\n </Objects>\n</Package>\n'
+
+
+def check_packages():
+    """What a Package.pkg or an IEC.lby does not list is not read, nor is Structured Text that a package itself lists."""
+    def listed(*names):
+        return PACKAGE.format("\n".join(f'  <Object Type="File">{name}</Object>' for name in names))
+
+    types = "TYPE\n\tBelt_type : STRUCT\n\t\tn : INT;\n\tEND_STRUCT;\nEND_TYPE\n"
+    write("Packed/Logical/Package.pkg", listed("Belt", "Global.typ", "R&amp;D", "Robots"))
+    write("Packed/Logical/Global.typ", types)
+    write("Packed/Logical/Global - Copy.typ", types)
+    write("Packed/Logical/old/Types.typ", types)
+    write("Packed/Logical/Robots/Package.pkg", listed("Robot.st", "Types.typ"))
+    write("Packed/Logical/Robots/Robot.st", "PROGRAM _MAIN\n\tMoveLR(ParkPos);\nEND_PROGRAM\n")
+    write("Packed/Logical/Robots/types.typ", types.replace("Belt_type", "Robot_type"))
+    write("Packed/Logical/R&D/IEC.lby", '<Library><Files>\n<File Description="x">Lib.fun</File>\n<File>sub\\Half.st</File>\n</Files></Library>\n')
+    write("Packed/Logical/R&D/Lib.fun", "FUNCTION Half : INT\n\tVAR_INPUT\n\t\tn : INT;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Packed/Logical/R&D/sub/Half.st", "FUNCTION Half\n\tHalf := n / 2;\nEND_FUNCTION\n")
+    write("Packed/Logical/R&D/Left.st", "FUNCTION Half\n\tHalf := missing;\nEND_FUNCTION\n")
+    write("Packed/Logical/Belt/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Belt.var</File></Files></Program>\n')
+    write("Packed/Logical/Belt/Belt.var", "VAR\n\tbelt : Belt_type;\n\trobot : Robot_type;\nEND_VAR\n")
+    write("Packed/Logical/Belt/Main.st", "PROGRAM _CYCLIC\n\tbelt.n := Half(8);\n\trobot.n := belt.n;\nEND_PROGRAM\n")
+    run("check", "Packed")
+    run("new", "packed", "--from", "Packed")
+    run("run", "--quiet", "packed.yaml")
+
+
 def check_mapp():
     """B&R: what configures mapp declares variables; names may differ in capitals alone; a program's folder has any name."""
     def configuration(path, *elements):
@@ -667,7 +695,7 @@ def check_openplc_files():
     assert "L0926" not in run("check", "split")
     run("new", "split", "--from", "split")
     made = (work / "split.yaml").read_text()
-    (work / "split.yaml").write_text(re.sub("signals: .*", "signals: ['%QW0', '%QW1', Counts.waited]", made))
+    (work / "split.yaml").write_text(re.sub(r"signals: \[.*?\]", "signals: ['%QW0', '%QW1', Counts.waited]", made))
     run("run", "split.yaml", "--trace", "split.csv")
     values = (work / "split.csv").read_text().splitlines()[-1].split(",")[-3:]
     assert values == ["258", "772", "5000000000"], values
@@ -918,6 +946,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_packages()
     check_task_classes()
     check_headers()
     check_mapp()
