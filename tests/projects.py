@@ -374,6 +374,21 @@ def check_packages():
     run("run", "--quiet", "packed.yaml")
 
 
+def check_later_constants():
+    """B&R's constants may be made of those that stand further down, as a sample of theirs has it."""
+    write("Later/Logical/Table/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Table.var</File></Files></Program>\n')
+    write("Later/Logical/Table/Table.var", "VAR CONSTANT\n\tHALF : USINT := (LAST + 1) / 2;\n\tLAST : USINT := SLOTS - 1;\n"
+          "\tSLOTS : USINT := 32;\nEND_VAR\nVAR\n\tlist : ARRAY[0..LAST] OF USINT;\n\tsum : USINT;\nEND_VAR\n")
+    write("Later/Logical/Table/Main.st", "PROGRAM _CYCLIC\n\tlist[LAST] := HALF;\n\tsum := list[31] + SLOTS;\nEND_PROGRAM\n")
+    run("new", "later", "--from", "Later")
+    made = (work / "later.yaml").read_text()
+    (work / "later.yaml").write_text(made + "expect:\n  - {at: end, Table.sum: 48}\n")
+    run("run", "--quiet", "later.yaml")
+    variables = work / "Later/Logical/Table/Table.var"
+    variables.write_text(variables.read_text().replace("SLOTS : USINT := 32", "SLOTS : USINT := LAST + 1"))
+    assert "'LAST' is not declared" in run("check", "Later", code=2)
+
+
 def check_mapp():
     """B&R: what configures mapp declares variables; names may differ in capitals alone; a program's folder has any name."""
     def configuration(path, *elements):
@@ -947,6 +962,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_nothing()
     check_automation_studio()
     check_packages()
+    check_later_constants()
     check_task_classes()
     check_headers()
     check_mapp()
