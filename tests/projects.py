@@ -346,6 +346,49 @@ def check_automation_studio():
     assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
 
 
+PACKAGE = '<?xml version="1.0"?>\n<Package xmlns="http://br-automation.co.at/AS/Package">\n <Objects>\n{}\n </Objects>\n</Package>\n'
+
+
+def check_packages():
+    """What a Package.pkg or an IEC.lby does not list is not read, nor is Structured Text that a package itself lists."""
+    def listed(*names):
+        return PACKAGE.format("\n".join(f'  <Object Type="File">{name}</Object>' for name in names))
+
+    types = "TYPE\n\tBelt_type : STRUCT\n\t\tn : INT;\n\tEND_STRUCT;\nEND_TYPE\n"
+    write("Packed/Logical/Package.pkg", listed("Belt", "Global.typ", "R&amp;D", "Robots"))
+    write("Packed/Logical/Global.typ", types)
+    write("Packed/Logical/Global - Copy.typ", types)
+    write("Packed/Logical/old/Types.typ", types)
+    write("Packed/Logical/Robots/Package.pkg", listed("Robot.st", "Types.typ"))
+    write("Packed/Logical/Robots/Robot.st", "PROGRAM _MAIN\n\tMoveLR(ParkPos);\nEND_PROGRAM\n")
+    write("Packed/Logical/Robots/types.typ", types.replace("Belt_type", "Robot_type"))
+    write("Packed/Logical/R&D/IEC.lby", '<Library><Files>\n<File Description="x">Lib.fun</File>\n<File>sub\\Half.st</File>\n</Files></Library>\n')
+    write("Packed/Logical/R&D/Lib.fun", "FUNCTION Half : INT\n\tVAR_INPUT\n\t\tn : INT;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Packed/Logical/R&D/sub/Half.st", "FUNCTION Half\n\tHalf := n / 2;\nEND_FUNCTION\n")
+    write("Packed/Logical/R&D/Left.st", "FUNCTION Half\n\tHalf := missing;\nEND_FUNCTION\n")
+    write("Packed/Logical/Belt/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Belt.var</File></Files></Program>\n')
+    write("Packed/Logical/Belt/Belt.var", "VAR\n\tbelt : Belt_type;\n\trobot : Robot_type;\nEND_VAR\n")
+    write("Packed/Logical/Belt/Main.st", "PROGRAM _CYCLIC\n\tbelt.n := Half(8);\n\trobot.n := belt.n;\nEND_PROGRAM\n")
+    run("check", "Packed")
+    run("new", "packed", "--from", "Packed")
+    run("run", "--quiet", "packed.yaml")
+
+
+def check_later_constants():
+    """B&R's constants may be made of those that stand further down, as a sample of theirs has it."""
+    write("Later/Logical/Table/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Table.var</File></Files></Program>\n')
+    write("Later/Logical/Table/Table.var", "VAR CONSTANT\n\tHALF : USINT := (LAST + 1) / 2;\n\tLAST : USINT := SLOTS - 1;\n"
+          "\tSLOTS : USINT := 32;\nEND_VAR\nVAR\n\tlist : ARRAY[0..LAST] OF USINT;\n\tsum : USINT;\nEND_VAR\n")
+    write("Later/Logical/Table/Main.st", "PROGRAM _CYCLIC\n\tlist[LAST] := HALF;\n\tsum := list[31] + SLOTS;\nEND_PROGRAM\n")
+    run("new", "later", "--from", "Later")
+    made = (work / "later.yaml").read_text()
+    (work / "later.yaml").write_text(made + "expect:\n  - {at: end, Table.sum: 48}\n")
+    run("run", "--quiet", "later.yaml")
+    variables = work / "Later/Logical/Table/Table.var"
+    variables.write_text(variables.read_text().replace("SLOTS : USINT := 32", "SLOTS : USINT := LAST + 1"))
+    assert "'LAST' is not declared" in run("check", "Later", code=2)
+
+
 def check_mapp():
     """B&R: what configures mapp declares variables; names may differ in capitals alone; a program's folder has any name."""
     def configuration(path, *elements):
@@ -657,6 +700,22 @@ def check_openplc_editor():
     assert "drawn.fbd:1:1: error" in run("check", "editor4/", code=2)
 
 
+def check_openplc_files():
+    """One file with RESOURCE .. ON PLC has all of its folder read as OpenPLC's: words count words, INT_TO_TIME seconds."""
+    write("split/configuration.st", "CONFIGURATION Line\n  RESOURCE Res0 ON PLC\n    TASK task0(INTERVAL := T#20ms, PRIORITY := 0);\n"
+          "    PROGRAM instance0 WITH task0 : Counts;\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    write("split/globals.st", "VAR_GLOBAL\n  first AT %QW0 : INT;\n  second AT %QW1 : INT;\nEND_VAR\n")
+    write("split/counts.st", "PROGRAM Counts\nVAR_EXTERNAL first, second : INT; END_VAR\nVAR waited : TIME; END_VAR\n"
+          "first := 258;\nsecond := 772;\nwaited := INT_TO_TIME(5);\nEND_PROGRAM\n")
+    assert "L0926" not in run("check", "split")
+    run("new", "split", "--from", "split")
+    made = (work / "split.yaml").read_text()
+    (work / "split.yaml").write_text(re.sub(r"signals: \[.*?\]", "signals: ['%QW0', '%QW1', Counts.waited]", made))
+    run("run", "split.yaml", "--trace", "split.csv")
+    values = (work / "split.csv").read_text().splitlines()[-1].split(",")[-3:]
+    assert values == ["258", "772", "5000000000"], values
+
+
 def check_lost_bases():
     """What a base that is not here would have is told by no message but the one of the library."""
     twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
@@ -902,6 +961,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_neighbours()
     check_nothing()
     check_automation_studio()
+    check_packages()
+    check_later_constants()
     check_task_classes()
     check_headers()
     check_mapp()
@@ -913,6 +974,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_named_programs()
     check_qualified_names()
     check_openplc_editor()
+    check_openplc_files()
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()

@@ -9,6 +9,7 @@
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
+#include "runtime/projects/openplc.hpp"
 #include "runtime/source/codes.hpp"
 
 namespace lineshaft {
@@ -89,6 +90,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     for (const std::string& text : options_.forces) force(text);
     for (const Node& source : program_.sources) note_project(source);
     for (const Node& source : program_.sources) find_source(source);
+    projects::read_as_neighbours(program_.texts);
     for (ReplayPlan& replay : program_.replays) find_file(replay);
     std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
     for (const BlockPlan& block : program_.blocks) check_attached(block.task);
@@ -344,6 +346,7 @@ projects::Project read_project(const std::string& path,
         };
         projects::read_sources({project, out, resolve}, file);
     }
+    projects::read_as_neighbours(project.sources);
     return project;
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/openplc.hpp"
 #include "runtime/projects/organization_blocks.hpp"
+#include "runtime/projects/packages.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/simatic_ml.hpp"
 #include "runtime/projects/simatic_sd.hpp"
@@ -189,6 +190,9 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     std::erase_if(files, is_of_a_linker);
     std::erase_if(files, is_built);
     std::erase_if(files, is_of_no_source);
+    std::erase_if(files, [packages = Packages()](const std::string& path) mutable {
+        return packages.leave_out(path);
+    });
     std::erase_if(files, is_left_to_openplc);
     leave_to_projects(files);
     std::ranges::sort(files);

@@ -58,14 +58,14 @@ std::string NetworkText::type_of_takers(std::size_t i) const {
     return {};
 }
 
-/// An operator takes what its other arguments are, or what its result goes to.
+/// What is overloaded takes what its other arguments are, or what its result goes to.
 std::string NetworkText::type_of_taker(std::size_t i, std::size_t by,
                                        std::set<std::size_t>& seen) const {
     const Element& to = drawing_.elements[by];
     if (to.kind == Drawn::out_variable)
         return context_.types.of_expression(file_.plain(to.node.child("expression")));
-    if (to.kind != Drawn::block || !attribute(to, "instanceName").empty() || !is_operator(to))
-        return {};
+    if (to.kind != Drawn::block || !attribute(to, "instanceName").empty()) return {};
+    if (!is_operator(to) && !context_.types.is_of_one_type(type_name_of(to))) return {};
     if (seen.size() > most_typed || !seen.insert(by).second) return {};
     std::set<std::size_t> without{i};
     std::string type = context_.types.of_call("add", types_of_arguments(by, without));

@@ -88,7 +88,8 @@ class DrawingReader {
     void find_networks();
     void place_labels();
     void put_in_order();
-    bool is_as_in_document() const;
+    bool is_of_matiec() const;
+    std::vector<std::size_t> rows() const;
 
     std::string text(pugi::xml_node node, const char* attribute) const {
         return file_.plain(node.attribute(attribute));
@@ -127,7 +128,7 @@ void DrawingReader::add(pugi::xml_node node) {
         return;
     }
     if (known->kind == Drawn::transition && !condition_point(node)) return;
-    const bool has_no_order = order_ == DrawnOrder::document && known->kind == Drawn::coil;
+    const bool has_no_order = order_ != DrawnOrder::networks && known->kind == Drawn::coil;
     const pugi::xml_node position = node.child("position");
     made_.elements.push_back(
         {.kind = known->kind,
@@ -272,11 +273,29 @@ void DrawingReader::place_labels() {
     }
 }
 
-bool DrawingReader::is_as_in_document() const {
-    return order_ == DrawnOrder::document &&
+bool DrawingReader::is_of_matiec() const {
+    return order_ != DrawnOrder::networks &&
            std::ranges::none_of(made_.elements, [](const Element& element) {
                return element.kind == Drawn::jump || element.kind == Drawn::return_;
            });
+}
+
+/// The row of each element, from top to bottom: what begins less than 10 below its first one.
+std::vector<std::size_t> DrawingReader::rows() const {
+    const auto& elements = made_.elements;
+    std::vector<std::size_t> sorted(elements.size()), made(elements.size());
+    std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+    std::ranges::stable_sort(sorted, {}, [&](std::size_t i) { return elements[i].y; });
+    std::size_t row = 0;
+    double top = 0;
+    for (const std::size_t i : sorted) {
+        if (row == 0 || elements[i].y >= top + 10) {
+            ++row;
+            top = elements[i].y;
+        }
+        made[i] = row;
+    }
+    return made;
 }
 
 void DrawingReader::put_in_order() {
@@ -290,13 +309,16 @@ void DrawingReader::put_in_order() {
         return std::make_tuple(element.order <= 0, std::max<std::int64_t>(element.order, 0),
                                element.network, rank, element.y, element.x, i);
     };
-    const auto place_in_document = [&](std::size_t i) {
+    const bool is_by_position = order_ == DrawnOrder::position;
+    const std::vector<std::size_t> row = is_by_position ? rows() : std::vector<std::size_t>();
+    const auto key_of_matiec = [&](std::size_t i) {
         const Element& element = elements[i];
         return std::make_tuple(element.order <= 0, std::max<std::int64_t>(element.order, 0),
-                               element.kind == Drawn::block, i);
+                               element.kind == Drawn::block, is_by_position ? row[i] : 0,
+                               is_by_position ? element.x : 0, i);
     };
-    if (is_as_in_document())
-        std::ranges::sort(made_.order, {}, place_in_document);
+    if (is_of_matiec())
+        std::ranges::sort(made_.order, {}, key_of_matiec);
     else
         std::ranges::sort(made_.order, {}, key);
 }

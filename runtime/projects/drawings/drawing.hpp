@@ -33,8 +33,9 @@ struct Line {
 
 enum class Edge : std::uint8_t { none, rising, falling };
 enum class Storage : std::uint8_t { none, set, reset };
-/// Whose order of evaluation a drawing has: that of CODESYS' networks, or that of MatIEC's editors.
-enum class DrawnOrder : std::uint8_t { networks, document };
+/// Whose order of evaluation a drawing has: that of CODESYS' networks, or that of MatIEC's editors
+/// of 2024 and later, or of those before.
+enum class DrawnOrder : std::uint8_t { networks, document, position };
 
 /// Where lines end: several of them are a wired OR.
 struct Pin {
@@ -65,7 +66,8 @@ struct Drawing {
     /// `executionOrderId`, then networks from top to bottom, and elements in them likewise, then
     /// from left to right. Jumps and returns come last in their networks. DrawnOrder::document: by
     /// `executionOrderId` of boxes and variables, then coils and variables as they stand in the
-    /// file, then boxes; with jumps, which those editors do not have, as above.
+    /// file, then boxes. DrawnOrder::position: likewise, but from top to bottom, what is less than
+    /// 10 apart from left to right. With jumps, which those editors do not have, as above.
     std::vector<std::size_t> order;
 };
 

@@ -14,6 +14,17 @@ namespace {
 constexpr int deepest_line = 400;
 constexpr std::size_t longest_value = 1U << 16, longest_read_again = 1U << 10;
 
+/// The editors in Python 2 sort by position; those in Python 3, which came with 2024, do not.
+DrawnOrder order_of(const BodyContext& context) {
+    if (!context.is_of_matiec) return DrawnOrder::networks;
+    const pugi::xml_node root = context.file.root();
+    std::string date =
+        context.file.plain(root.child("contentHeader").attribute("modificationDateTime"));
+    if (date.empty())
+        date = context.file.plain(root.child("fileHeader").attribute("creationDateTime"));
+    return !date.empty() && date < "2024" ? DrawnOrder::position : DrawnOrder::document;
+}
+
 }  // namespace
 
 std::string MadeVariables::make(std::string_view prefix, std::string_view type) {
@@ -30,8 +41,7 @@ void MadeVariables::declare(std::string_view name, std::string_view type) {
 NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
     : context_(context),
       file_(context.file),
-      drawing_(read_drawing(context.file, body, context.out,
-                            context.is_of_matiec ? DrawnOrder::document : DrawnOrder::networks)),
+      drawing_(read_drawing(context.file, body, context.out, order_of(context))),
       jumps_(context.variables, labels()),
       states_(drawing_.elements.size()) {
     for (std::size_t i = 0; i < drawing_.elements.size(); ++i) {
@@ -184,7 +194,8 @@ Value NetworkText::value_of_element(std::size_t i) {
             return edge_of(value, edge_of_attribute(element), element);
         }
         case Drawn::in_out_variable: {
-            if (!state.is_done && !comes_later(element)) evaluate(i);
+            const bool waits = context_.is_of_matiec || comes_later(element);
+            if (!state.is_done && !waits) evaluate(i);
             Value value = written(element, element.node.child("expression"));
             return attribute(element, "negatedOut") == "true" ? negated(value, place) : value;
         }
@@ -193,6 +204,7 @@ Value NetworkText::value_of_element(std::size_t i) {
         case Drawn::continuation:
             return value_of_wire(i);
         case Drawn::coil:
+            if (context_.is_of_matiec) return value_of_wire(i);
             if (!state.is_done) evaluate(i);
             if (state.value) return *state.value;
             break;
@@ -209,7 +221,9 @@ Value NetworkText::value_of_wire(std::size_t i) {
     State& state = states_[i];
     const Mark place = place_of(element);
     if (state.value) return *state.value;
-    if (state.is_active) return value_of_loop(i, element.kind == Drawn::contact ? "BOOL" : "");
+    const bool is_coil = element.kind == Drawn::coil;
+    if (state.is_active)
+        return value_of_loop(i, is_coil || element.kind == Drawn::contact ? "BOOL" : "");
     state.is_active = true;
     Value value;
     if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
@@ -228,7 +242,7 @@ Value NetworkText::value_of_wire(std::size_t i) {
     }
     if (!state.loop.empty())
         state.value = kept_in(state.loop, value, place);
-    else if (state.uses.size() > 1 && !value.type.empty() && value.type != "#" &&
+    else if (state.uses.size() + is_coil > 1 && !value.type.empty() && value.type != "#" &&
              !is_read_again(value))
         state.value = kept_in(context_.variables.make("_wire", value.type), value, place);
     return state.value.value_or(value);
@@ -324,20 +338,22 @@ void NetworkText::assign(std::size_t i) {
     const Mark place = place_of(element);
     const bool is_coil = element.kind == Drawn::coil;
     if (element.inputs.empty() && element.kind == Drawn::in_out_variable) return;
+    const bool is_passed = is_coil && !states_[i].uses.empty();
     Value value;
+    if (is_passed && context_.is_of_matiec) value = value_of_wire(i);
     states_[i].is_active = true;
-    if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
+    if (value.is_empty() && !element.inputs.empty())
+        value = value_of(element, element.inputs.front());
     states_[i].is_active = false;
     if (states_[i].is_written) return;
     if (value.is_empty())
         return context_.out.warn(code::not_supported, place,
                                  fmt::format("nothing leads to this {}", word_of(element.kind)),
                                  "it keeps its value: draw a line to it, or remove it");
-    if (is_coil && !states_[i].uses.empty())
+    if (is_passed && !context_.is_of_matiec)
         states_[i].value = value =
-            value.is_always || is_read_again(value)
-                ? value
-                : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
+            value.is_always ? value
+                            : kept_in(context_.variables.make("_wire", "BOOL"), value, place);
     if (element.kind != Drawn::in_out_variable) {
         if (attribute(element, "negated") == "true") value = negated(value, place);
         value = edge_of(value, edge_of_attribute(element), element);

@@ -185,6 +185,13 @@ std::string NetworkTypes::of_declared(std::string_view pou, std::string_view var
     return found == declared->second.end() ? std::string() : found->second;
 }
 
+bool NetworkTypes::is_of_one_type(std::string_view function) const {
+    const std::string name = lower(function);
+    const auto* like = std::ranges::find(like_arguments, name, &LikeArguments::name);
+    return like != std::end(like_arguments) && like->skipped == 0 && !like->is_first &&
+           !declared_.functions.contains(name);
+}
+
 std::string NetworkTypes::of_call(std::string_view function,
                                   const std::vector<std::string>& arguments) const {
     const std::string name = lower(function);

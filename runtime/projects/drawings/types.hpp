@@ -35,6 +35,8 @@ class NetworkTypes {
     std::string of_declared(std::string_view pou, std::string_view variable) const;
     /// Of a function's result, from the types of its arguments.
     std::string of_call(std::string_view function, const std::vector<std::string>& arguments) const;
+    /// Whether all arguments and the result are of one type: `ADD`, `MAX`, `LIMIT`.
+    bool is_of_one_type(std::string_view function) const;
 
   private:
     std::string of_name(std::string_view name) const;

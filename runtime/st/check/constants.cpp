@@ -103,7 +103,7 @@ bool evaluate(Checking& c, Expression*& e) {
 std::optional<Wide> check_whole(Checking& c, Expression*& e, const Type& type) {
     if (!check(c, e, &type)) return {};
     if (!evaluate(c, e)) {
-        if (e->type)
+        if (e->type && (type.kind != Kind::enumeration || coerce(c, e, type)))
             c.fail(code::not_a_constant, e->place, "a constant is due here",
                    "declare it in VAR CONSTANT");
         return {};

@@ -196,8 +196,21 @@ bool is_of_base(const Type& from, const Type& to) {
     return base && to.kind == Kind::structure && (same_type(*base, to) || is_of_base(*base, to));
 }
 
+/// A variable hides the value of its name.
+bool refuse_hidden_value(Checking& c, const Expression& e, const Type& to) {
+    const auto value = std::ranges::find_if(
+        to.values, [&](const std::string& text) { return same_name(text, e.place.text()); });
+    if (to.kind != Kind::enumeration || value == to.values.end()) return false;
+    c.fail(code::type_does_not_fit, e.place,
+           fmt::format("'{}' is a variable here, a {}, and no value of {}", e.place.text(),
+                       describe(*e.type), describe(to)),
+           fmt::format("write {}#{}", to.name, *value));
+    return true;
+}
+
 bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     const Type& from = *e.type;
+    if (refuse_hidden_value(c, e, to)) return false;
     const bool of_literal = from.kind == Kind::any_real;
     if (of_literal && !to.is_real() && to.is_number())
         return c.fail(code::conversion_may_lose, e.place,

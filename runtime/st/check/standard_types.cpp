@@ -173,6 +173,17 @@ const Type* common_of(const Type& one, const Type& two) {
     return common ? common : common_number(a, b);
 }
 
+/// `b := MOVE(1);`: 0 and 1 are values of BOOL as well.
+bool are_bits(const Expression& call, std::size_t first) {
+    return std::all_of(call.arguments.begin() + static_cast<std::ptrdiff_t>(first),
+                       call.arguments.end(), [](const Argument& argument) {
+                           const Expression& value = *argument.value;
+                           return is_constant(value) && value.type->is_any() &&
+                                  !value.type->is_real() &&
+                                  (value.constant.integer == 0 || value.constant.integer == 1);
+                       });
+}
+
 /// The type that all arguments from `first` on have in common, which they become.
 const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
     const Type* common = &given_type(call, first);
@@ -182,7 +193,8 @@ const Type* unite_from(Checking& c, Expression& call, std::size_t first, const T
         return c.fail(code::conversion_may_lose, call.place,
                       fmt::format("the arguments of {} have no common type", call.standard->name),
                       "convert them");
-    const bool is_wanted = expected && (expected->is_number() || expected->is_bits());
+    const bool is_bit = expected && expected->kind == Kind::boolean && are_bits(call, first);
+    const bool is_wanted = is_bit || (expected && (expected->is_number() || expected->is_bits()));
     if (common->is_any() && is_wanted) common = &expected->plain();
     if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
     return coerce_from(c, call, first, common->plain()) ? &common->plain() : nullptr;
