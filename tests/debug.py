@@ -543,6 +543,15 @@ def test_refusals():
         except Refused as why:
             assert wanted in str(why), why
     client.end()
+    client = Client(lineshaft)
+    client.launch(program)
+    client.event("terminated")
+    try:
+        client.request("evaluate", expression="motor.speed")
+        raise AssertionError("the run has ended")
+    except Refused as why:
+        assert str(why) == "the run has ended", why
+    client.end()
 
 
 for name, test in list(globals().items()):

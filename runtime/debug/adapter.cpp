@@ -51,15 +51,12 @@ class Adapter final : Front {
     }
 
     void run() {
-        has_run_ = true;
         const RunReport report = session_->run(launched_->how);
+        has_run_ = true;
         exit_code_ = launched_->tell(report);
         for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
             const Verdict& verdict = report.verdicts[i];
-            tell("console", fmt::format("{}  {}{}\n",
-                                        verdict.ok          ? "ok    "
-                                        : verdict.undecided ? "UNDECIDED"
-                                                            : "FAILED",
+            tell("console", fmt::format("{}  {}{}\n", verdict.word(),
                                         launched_->loaded.linked.expectations[i].text,
                                         verdict.ok ? "" : ": " + verdict.deviation));
         }
@@ -188,7 +185,8 @@ class Adapter final : Front {
     }
 
     Session& standing() {
-        if (!stands_) throw Refused("the machine runs; pause it first");
+        if (!stands_)
+            throw Refused(has_run_ ? "the run has ended" : "the machine runs; pause it first");
         return session();
     }
 

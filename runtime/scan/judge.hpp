@@ -57,6 +57,9 @@ struct Verdict {
     bool ok = false;
     bool undecided = false;  ///< not ok because the run ended too early to say
     std::string deviation;   ///< of the first failure: scan, time, both values; empty when ok
+
+    /// How a user is told of it, in a column.
+    const char* word() const { return ok ? "ok    " : undecided ? "UNDECIDED" : "FAILED"; }
 };
 
 /// Watches a run and judges its expectations.

@@ -63,8 +63,7 @@ void print_text(const RunCommand& command, const Loaded& loaded, const RunReport
     std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
     for (std::size_t i = 0; i < report.verdicts.size(); ++i) {
         const Verdict& verdict = report.verdicts[i];
-        const char* word = verdict.ok ? "ok    " : verdict.undecided ? "UNDECIDED" : "FAILED";
-        fmt::print(out, "{}  {}\n", word, loaded.linked.expectations[i].text);
+        fmt::print(out, "{}  {}\n", verdict.word(), loaded.linked.expectations[i].text);
         if (!verdict.ok) fmt::print(out, "        {}\n", verdict.deviation);
     }
     if (command.common.quiet) return;
