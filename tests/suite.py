@@ -154,6 +154,11 @@ assert run("check", "marked", code=0) == "ok  marked: 4 files\n"
 assert run("check", "short/fault.st", code=0) == "ok  short/fault.st\n"
 
 # What stands at the end, by name or of a block.
+write("seen/main.st", "PROGRAM Main\nVAR n : INT := 3; t : TON; END_VAR\nEND_PROGRAM\n")
+write("seen/a.yaml", "lineshaft: 1\nsources: [main.st]\ntasks: {t: {every: 1 ms}}\n"
+      "blocks: {main: {type: Main, task: t}}\nrun: {for: 1 ms}\n")
+shown = run("run", "seen/a.yaml", "--show", "main", code=0)
+assert "main.n" in shown and "main.t." not in shown, shown
 said = run("run", "marked/a.yaml", "--show", "n,inputs.on", code=0).splitlines()
 assert [line.split() for line in said[-4:]] == [["n.q", "false"], ["n.cv", "0"], ["n.error", "false"], ["inputs.on", "false"]] or \
     [line.split() for line in said[-3:]] == [["n.q", "false"], ["n.cv", "0"], ["inputs.on", "false"]], said

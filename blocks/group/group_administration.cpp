@@ -43,7 +43,7 @@ std::span<const Field> GroupSetOverride::fields() {
     using B = GroupSetOverride;
     static const Field table[] = {
         group_pin::group(),
-        input("Enable", &B::execute, "", "the factors count"),
+        input("Enable", &B::execute, "", "true: the factors count, and go on to when it falls"),
         input("VelFactor", &B::pins, &GroupRequest::velocity_factor, "",
               "of the velocity along the path; above 1 as 1; 0: standstill")
             .at_least(0),

@@ -61,7 +61,7 @@ std::span<const Field> SetOverride::fields() {
     using B = SetOverride;
     static const Field table[] = {
         pin::axis(),
-        input("Enable", &B::execute, "", "the factors count"),
+        input("Enable", &B::execute, "", "true: the factors count, and go on to when it falls"),
         input("VelFactor", &B::pins, &Request::velocity_factor, "", "of velocities; 0: standstill")
             .at_least(0),
         input("AccFactor", &B::pins, &Request::acceleration_factor, "",

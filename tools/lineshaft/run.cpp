@@ -135,18 +135,25 @@ void check_files(const RunCommand& command, const Loaded& loaded, Diagnostics& o
     if (writes_to_stdout(command)) check_stdout(command, loaded, out);
 }
 
-bool is_output(const Net& net, const Signal& signal) {
-    return signal.port.instance >= 0 && net.field(signal.port).direction == Direction::output;
+/// An output of a block, or of one in Structured Text a variable of its own. `part` is its path.
+bool is_shown(const Net& net, const Signal& signal, std::string_view part) {
+    if (signal.port.instance < 0) return false;
+    const Direction direction = net.field(signal.port).direction;
+    if (direction == Direction::output) return true;
+    return direction == Direction::local && net.instance(signal.port.instance).type->owner &&
+           part.find('.') == part.npos;
 }
 
-/// What `--show` names: signals, or a block with all of its outputs.
+/// What `--show` names: signals, or a block with all that it shows.
 std::vector<Signal> shown_signals(const RunCommand& command, Loaded& loaded, Diagnostics& out) {
     std::vector<Signal> shown;
     Machine& machine = loaded.linked.machine;
     for (const std::string& name : command.shown) {
         const std::size_t before = shown.size();
         for (const Signal& signal : machine.signals)
-            if (signal.name.starts_with(name + ".") && is_output(loaded.linked.net, signal))
+            if (signal.name.starts_with(name + ".") &&
+                is_shown(loaded.linked.net, signal,
+                         std::string_view(signal.name).substr(name.size() + 1)))
                 shown.push_back(signal);
         if (shown.size() != before) continue;
         Node node;
@@ -316,8 +323,8 @@ void add_run(CLI::App& app, Exit& result) {
                     "Play back what 'lineshaft serve' recorded, and end where that ends")
         ->type_name("FILE.yaml");
     sub->add_option("--show", command->shown,
-                    "Print what these signals are at the end, or all of a block's: "
-                    "x.position,move")
+                    "Print what these signals are at the end, or all outputs of a block and the "
+                    "variables of one in Structured Text: x.position,move")
         ->type_name("SIGNALS")
         ->delimiter(',');
     sub->callback([command, &result] { result = execute(*command); });

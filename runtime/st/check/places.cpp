@@ -235,6 +235,13 @@ const Type* check_bit(Checking& c, Expression*& e) {
     return bits == 1 ? &bool_type : &bits_type(bits);
 }
 
+/// `axis.Override.Velocity`, which a FUNCTION of the axis gives.
+static bool is_tag_of_axis(const Expression& target) {
+    const Expression* of = &target;
+    while (of->kind == E::member && of->operands[0]) of = of->operands[0];
+    return of->kind == E::call && of->routine && of->routine->name.starts_with("AXIS_REF.");
+}
+
 bool check_target(Checking& c, Expression& target, std::string_view how) {
     const auto refuse = [&](std::string what, std::string help) {
         return c.fail(code::cannot_be_assigned, target.place,
@@ -249,6 +256,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
         return !target.operands[0]->type || check_target(c, *target.operands[0], how);
     }
     if (target.kind == E::self || target.kind == E::deref) return true;
+    if (is_tag_of_axis(target))
+        return refuse("a tag of an axis",
+                      "it is read only: MC_SetOverride and MC_WriteParameter set what can be set");
     if (target.kind != E::name && target.kind != E::member)
         return refuse("a value", "a variable, an element or a member stands left of ':='");
     Variable* variable = target.variable;
