@@ -20,6 +20,18 @@ std::vector<std::string> names(const Nodes& nodes) {
     return names;
 }
 
+/// `Lamps.lit` of a list of globals, which is `globals.lit`: what to write; empty for any other
+/// name.
+std::string name_of_listed(const Net& net, std::string_view owner, std::string_view port) {
+    const auto globals = net.instance_numbers.find("globals");
+    if (globals == net.instance_numbers.end() ||
+        net.instance_numbers.contains(std::string(owner)) ||
+        !net.instance(globals->second).known() ||
+        !net.instance(globals->second).type->find_readable(port))
+        return {};
+    return fmt::format("write globals.{}, as variables of a list are those of 'globals'", port);
+}
+
 }  // namespace
 
 std::string kind(Type type, std::span<const std::string_view> names) {
@@ -41,6 +53,11 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
     }
     if (name->owner == "inputs") return find_input(read, node, name->port);
     if (name->owner == "outputs") return find_output(read, node, name->port);
+    if (const std::string help = name_of_listed(*this, name->owner, name->port); !help.empty()) {
+        read.fail(code::unknown_block, node,
+                  fmt::format("the program has no block '{}'", name->owner), help);
+        return {};
+    }
     const int number = find_block(read, node, name->owner);
     if (number < 0 || !instance(number).known()) return {};
     if (const Field* field = instance(number).type->find_readable(name->port))

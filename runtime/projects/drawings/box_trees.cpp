@@ -394,9 +394,15 @@ class BoxTrees {
         return box.main() < box.outputs.size() ? output(box.main()) : enabled_of(box);
     }
 
+    /// `???` at an output is a pin without a variable, as is an empty one.
+    bool is_taken_at(const Box& box, std::size_t output) const {
+        return output < box.takers.size() && !Archive::is_null(box.takers[output]) &&
+               archive_.text(box.takers[output], "Operand") != "???";
+    }
+
     /// To what is connected to an output.
     void give(const Box& box, std::size_t output, const Value& value) {
-        if (output >= box.takers.size() || Archive::is_null(box.takers[output])) return;
+        if (!is_taken_at(box, output)) return;
         const Marks marks = archive_.marks_of(box.takers[output]);
         if (marks.is_jump || marks.is_return)
             return refuse(box.place, "a jump at an output of a box is not supported",
@@ -408,15 +414,14 @@ class BoxTrees {
     std::vector<std::pair<std::string, Excerpts>> outputs_of(const Box& box) {
         std::vector<std::pair<std::string, Excerpts>> made;
         for (std::size_t i = box.result() + 1; i < box.takers.size(); ++i)
-            if (!Archive::is_null(box.takers[i]) && i < box.outputs.size())
+            if (is_taken_at(box, i) && i < box.outputs.size())
                 made.emplace_back(box.outputs[i], written(box.takers[i]).text);
         return made;
     }
 
     Value call_function(const Box& box, bool is_taken) {
         const std::size_t result = box.result();
-        const bool is_assigned =
-            result < box.takers.size() && !Archive::is_null(box.takers[result]);
+        const bool is_assigned = is_taken_at(box, result);
         const bool is_result_taken = is_taken && box.main() == result;
         Value value = result_of(box);
         if (is_assigned) {

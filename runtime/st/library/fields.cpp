@@ -145,11 +145,13 @@ class FieldWriter {
         return section == Section::local || section == Section::output;
     }
 
-    /// Parts of an instance are not wired one by one. `is_local`: it is the instance's own.
+    /// Parts of an instance are not wired one by one, but for `AT %I*` and `AT %Q*`. `is_local`: it
+    /// is the instance's own.
     void write_part(const Variable& member, std::uint32_t slot, const std::string& path,
                     Direction direction, bool is_local) {
         const bool was_own = std::exchange(is_own_, is_own_ && is_local);
-        write(member, slot, path, direction == Direction::output ? direction : Direction::local);
+        const bool is_output = direction == Direction::output;
+        write(member, slot, path, pin_of(member, is_output ? direction : Direction::local));
         is_own_ = was_own;
     }
 

@@ -142,6 +142,14 @@ TEST_CASE("trees of TwinCAT's networks are expressions, assignments and calls") 
                                .outputs = {"Q", "ET"},
                                .takers = {operand("b"), "<n />"}}))) ==
           "\ntimer(IN := a, PT := T#1s);\nb := timer.Q;\nEND_PROGRAM\n");
+    CHECK(text_of(network(box({.type = "TON",
+                               .call = "FunctionBlock",
+                               .instance = "timer",
+                               .inputs = {leaf("a")},
+                               .names = {"IN"},
+                               .outputs = {"Q"},
+                               .takers = {"<n />", operand("\?\?\?")}}))) ==
+          "\ntimer(IN := a);\nEND_PROGRAM\n");
     CHECK(text_of(network(box(
               {.type = "LIMIT",
                .inputs = {leaf("x", 0, "INT"), leaf("y", 0, "INT"), leaf("9", 0, "INT")},
