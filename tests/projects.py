@@ -491,6 +491,11 @@ def check_local_types():
     run("run", "local.yaml", "--quiet")
 
 
+def check_awl():
+    write("old.awl", "U E 0.0;\n")
+    assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
+
+
 def check_apax():
     write("package/apax.yml", "name: p\n")
     write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
@@ -908,6 +913,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_organization_blocks()
     check_softmotion()
     check_local_types()
+    check_awl()
     check_apax()
     check_solution()
     check_named_programs()
