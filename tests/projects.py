@@ -511,6 +511,10 @@ def check_apax():
           "{Test}\nMETHOD PUBLIC Reads\nVAR_EXTERNAL CONSTANT MOST : DINT; END_VAR\n"
           "Equal(expected := MOST, actual := limits.Top());\nEND_METHOD\nEND_CLASS\n")
     assert "1 of 1 passed" in run("test", "package")
+    write("package/SystemConstants/limits.st", (work / "package/src/limits.st").read_text())
+    write("package/src/main.st", "PROGRAM Main\nVAR c : Counter; END_VAR\nc();\nEND_PROGRAM\n")
+    run("check", "package")
+    run("new", "of_package", "--from", "package")
 
 
 def twincat(folder, kind, name, declaration, body="", members=""):
