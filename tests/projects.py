@@ -534,6 +534,11 @@ def check_local_types():
     run("run", "local.yaml", "--quiet")
 
 
+def check_awl():
+    write("old.awl", "U E 0.0;\n")
+    assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
+
+
 def check_apax():
     write("package/apax.yml", "name: p\n")
     write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
@@ -549,6 +554,10 @@ def check_apax():
           "{Test}\nMETHOD PUBLIC Reads\nVAR_EXTERNAL CONSTANT MOST : DINT; END_VAR\n"
           "Equal(expected := MOST, actual := limits.Top());\nEND_METHOD\nEND_CLASS\n")
     assert "1 of 1 passed" in run("test", "package")
+    write("package/SystemConstants/limits.st", (work / "package/src/limits.st").read_text())
+    write("package/src/main.st", "PROGRAM Main\nVAR c : Counter; END_VAR\nc();\nEND_PROGRAM\n")
+    run("check", "package")
+    run("new", "of_package", "--from", "package")
 
 
 def twincat(folder, kind, name, declaration, body="", members=""):
@@ -969,6 +978,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_organization_blocks()
     check_softmotion()
     check_local_types()
+    check_awl()
     check_apax()
     check_solution()
     check_named_programs()

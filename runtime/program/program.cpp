@@ -11,6 +11,7 @@
 #include "runtime/program/templates.hpp"
 #include "runtime/projects/openplc.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft {
 
@@ -72,6 +73,12 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
         read_.diagnostics().add(code::unknown_kind_of_file, {file, 1, 1, 1},
                                 "this is Structured Text, not a program",
                                 "name it in the 'sources' of a program");
+        return std::move(program_);
+    }
+    if (lower(fs::path(file->path).extension().string()) == ".awl") {
+        read_.diagnostics().add(code::not_supported, {file, 1, 1, 1},
+                                "this is a source in STL (AWL) of STEP 7, which is not read",
+                                "write its blocks in SCL, LAD or FBD");
         return std::move(program_);
     }
     auto root = parse(file);

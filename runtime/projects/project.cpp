@@ -142,6 +142,21 @@ bool is_built(const std::string& file) {
     return folder.filename() == "build" && fs::exists(folder.parent_path() / "plc.xml", unknown);
 }
 
+/// Beside `src` and `test` of a package of SIMATIC AX, which neither its program nor its tests are.
+bool is_beside_package(const fs::path& file, const fs::path& folder) {
+    const fs::path below = file.lexically_relative(folder);
+    std::error_code unknown;
+    fs::path at = file.parent_path();
+    for (auto left = std::distance(below.begin(), below.end()); left > 0; --left) {
+        if (fs::exists(at / "apax.yml", unknown) && fs::is_directory(at / "src", unknown)) {
+            const fs::path first = *file.lexically_relative(at).begin();
+            return first != "src" && first != "test";
+        }
+        at = at.parent_path();
+    }
+    return false;
+}
+
 /// What projects list themselves: all below a `.plcproj`, or a `.prg`; and what lists them.
 void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
@@ -194,6 +209,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
         return packages.leave_out(path);
     });
     std::erase_if(files, is_left_to_openplc);
+    std::erase_if(files, [&](const auto& file) { return is_beside_package(file, folder); });
     leave_to_projects(files);
     std::ranges::sort(files);
     return files;

@@ -70,6 +70,30 @@ bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to) 
            all.has_signed && all.has_unsigned && all.width <= to.bits;
 }
 
+/// What TIA Portal converts by itself where a block's IEC check is off: numbers, and bit strings as
+/// integers or as the pattern of a real number of their width.
+bool converts_unchecked(const Expression& e, const Type& to) {
+    const Type& from = e.type->plain();
+    const auto is_whole = [](const Type& type) {
+        return type.kind == Kind::integer || type.kind == Kind::bits;
+    };
+    if (!e.place.dialect().packs_as_s7 || is_constant(e) || to.is_subrange) return false;
+    if (is_whole(from) && is_whole(to)) return true;
+    const bool are_numbers = from.is_number() && to.is_number();
+    const bool are_patterns = (from.kind == Kind::bits && to.kind == Kind::real) ||
+                              (from.kind == Kind::real && to.kind == Kind::bits);
+    return are_numbers || (are_patterns && from.bits == to.bits);
+}
+
+void warn_of_check(Checking& c, const Expression& e, const Type& to) {
+    const std::string& from = e.type->plain().name;
+    c.warn(
+        code::conversion_may_lose, e.place,
+        fmt::format("{} does not hold every {}", describe(to), from),
+        fmt::format("TIA Portal takes it where the block's IEC check is off; write {}_TO_{}(...)",
+                    from, to.name));
+}
+
 /// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
 /// width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
@@ -82,8 +106,11 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
     const bool mixes_signs = dialect.is_loose && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
-        !changes_sign && !mixes_signs)
-        return false;
+        !changes_sign && !mixes_signs) {
+        const bool is_unchecked = converts_unchecked(e, to);
+        if (is_unchecked) warn_of_check(c, e, to);
+        return is_unchecked;
+    }
     warn_of_loss(c, e, to);
     return true;
 }

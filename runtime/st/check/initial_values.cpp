@@ -161,6 +161,16 @@ bool begins_property(Checking& c, Argument& argument, const Type& type) {
     return begins;
 }
 
+/// TIA Portal: `((), (), 0.1)`, where a member keeps the start value of its type.
+bool is_left_open(Expression& value, const Type& type) {
+    const bool has_several =
+        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
+    const bool is_open = value.kind == E::list && value.arguments.empty() && !has_several &&
+                         value.is_structure() && value.place.dialect().packs_as_s7;
+    if (is_open) value.type = &type;
+    return is_open;
+}
+
 /// By name, or of a structure by position.
 void check_members(Checking& c, Expression& list, const Type& type) {
     const bool by_place =
@@ -188,7 +198,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
             c.fail(code::not_declared, argument.name.place,
                    fmt::format("{} has no '{}'", describe(type), argument.name.text),
                    suggest(argument.name.text, names_of(type.members)));
-        else if (found->type)
+        else if (found->type && !(by_place && is_left_open(*argument.value, *found->type)))
             check_part(c, argument.value, *found->type, found->text);
     }
 }

@@ -54,6 +54,15 @@ Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     return make_if(c, s.place, condition, std::move(then), std::move(otherwise));
 }
 
+/// `word.3`, or of a slice `word.%W1` the same bit of the whole: `word.19`.
+Expression* bit_of(Checking& c, Expression* word, std::size_t number) {
+    if (word->kind == E::bit) {
+        number += word->bits.first;
+        word = word->operands[0];
+    }
+    return make_bit(c, word, c.checked.names.emplace_back(std::to_string(number)));
+}
+
 /// SCATTER and GATHER: an assignment for each bit.
 void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
     const std::string_view name = scatters ? "SCATTER" : "GATHER";
@@ -66,14 +75,16 @@ void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
     const std::size_t count = array ? type->count() : type->members.size();
     const bool fits = bits->kind == Kind::bits && count == static_cast<std::size_t>(bits->bits) &&
                       (array || std::ranges::all_of(type->members, is_bool, &Variable::type));
-    if (!fits || !is_place(*word) || !is_place(*flags))
+    const bool is_word = is_place(word->kind == E::bit ? *word->operands[0] : *word);
+    if (!fits || !is_word || !is_place(*flags))
         return void(c.fail(
             code::type_does_not_fit, s->place,
             fmt::format("{} does not go with {} and {}", name, describe(*bits), describe(*type)),
-            "it takes a variable of BYTE to LWORD, and as many BOOL in an array or a structure"));
+            "it takes a variable or a slice, of BYTE to LWORD, and as many BOOL in an array or a "
+            "structure"));
     Block assignments;
     for (std::size_t i = 0; i < count; ++i) {
-        Expression* bit = make_bit(c, word, c.checked.names.emplace_back(std::to_string(i)));
+        Expression* bit = bit_of(c, word, i);
         Expression* flag = array ? make_element(c, flags, type->lower + static_cast<int>(i))
                                  : make_member(c, flags, type->members[i]->text);
         assignments.push_back(

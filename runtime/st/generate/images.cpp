@@ -112,7 +112,7 @@ void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
             if (!member || !member->type) continue;
             if (type.kind == Kind::union_)
                 fill_member_of_union(w, image, at, *member, argument.value);
-            else if (member->is_byte)
+            else if (member->is_byte && argument.value->kind == Expression::Kind::constant)
                 reinterpret_cast<char*>(&image[at])[member->byte] =
                     static_cast<char>(argument.value->constant.integer);
             else
