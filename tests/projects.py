@@ -725,6 +725,15 @@ def check_openplc_files():
     assert values == ["258", "772", "5000000000"], values
 
 
+def check_coils_in_series():
+    """Of MatIEC's editors each has what comes to the first one, however many there are."""
+    coils = '<leftPowerRail localId="0"/>' + "".join(
+        f'<coil localId="{i + 1}"><connectionPointIn><connection refLocalId="{i}"/></connectionPointIn><variable>a</variable></coil>'
+        for i in range(2000))
+    write("series.xml", drawn(coils))
+    run("check", "series.xml")
+
+
 def check_lost_bases():
     """What a base that is not here would have is told by no message but the one of the library."""
     twincat("lost", "POU", "Sensor", "FUNCTION_BLOCK Sensor EXTENDS FB_Strange\nVAR own : INT; END_VAR", "own := 1;")
@@ -985,6 +994,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_qualified_names()
     check_openplc_editor()
     check_openplc_files()
+    check_coils_in_series()
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()

@@ -31,17 +31,6 @@ Frame frame_at(const st::Halt& halt, const st::Library::Made& made, const Machin
             .machine = &machine};
 }
 
-/// Of the frame that the innermost of the calls that run has: what its instruction gave it.
-std::uint64_t base_of_last_call(const st::Code& code, std::byte* root, const Context& context,
-                                std::uint64_t depth) {
-    if (depth == 0) return 0;
-    const std::byte* call = root + 8 * (code.calls_slot() + 2 * (depth - 1));
-    const auto caller = read<std::uint64_t>(call + 8);
-    const st::Instruction& in = code.instructions[read<std::uint64_t>(call) - 1];
-    if (in.op == st::Op::call) return caller + in.a;
-    return read<std::uint64_t>(st::place_of(caller, root, context) + 8 * std::size_t{in.a});
-}
-
 std::size_t statement_at(const st::Code& code, std::uint64_t instruction) {
     const auto behind = std::ranges::upper_bound(code.statements, instruction, {},
                                                  &st::StatementStart::instruction);
@@ -58,9 +47,10 @@ FailedScan::FailedScan(Machine& machine, const st::Library::Made& made, const Bl
     const auto slot = [&](std::uint32_t number) {
         return read<std::uint64_t>(block.live + 8 * std::size_t{number});
     };
-    halt_.statement = statement_at(halt_.code, slot(st::place_slot));
-    halt_.depth = static_cast<std::uint32_t>(slot(st::depth_slot));
-    halt_.base = base_of_last_call(halt_.code, block.live, context_, halt_.depth);
+    const st::EndOfScan end = st::EndOfScan::of(slot(st::place_slot), slot(st::depth_slot));
+    halt_.statement = statement_at(halt_.code, end.instruction);
+    halt_.depth = end.depth;
+    halt_.base = end.frame;
 }
 
 Frame innermost(const st::Halt& halt, const st::Library::Made& made, const Machine& machine) {

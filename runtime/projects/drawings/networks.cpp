@@ -225,6 +225,7 @@ Value NetworkText::value_of_wire(std::size_t i) {
     if (state.is_active)
         return value_of_loop(i, is_coil || element.kind == Drawn::contact ? "BOOL" : "");
     state.is_active = true;
+    const std::size_t written_before = now_.text().size();
     Value value;
     if (!element.inputs.empty()) value = value_of(element, element.inputs.front());
     if (element.kind == Drawn::contact) {
@@ -245,6 +246,8 @@ Value NetworkText::value_of_wire(std::size_t i) {
     else if (state.uses.size() + is_coil > 1 && !value.type.empty() && value.type != "#" &&
              !is_read_again(value))
         state.value = kept_in(context_.variables.make("_wire", value.type), value, place);
+    else if (is_coil && now_.text().size() == written_before)
+        state.value = value;
     return state.value.value_or(value);
 }
 

@@ -172,8 +172,9 @@ std::vector<Routine*> all_callees(const Checking& c, const Routine& routine) {
 /// What instances find may lead back, too.
 void note_all_rings(Checking& c) {
     for (Routine* routine : c.checked.order) {
-        std::ranges::sort(routine->finds);
-        routine->finds.erase(std::ranges::unique(routine->finds).begin(), routine->finds.end());
+        auto& finds = routine->finds;
+        std::ranges::sort(finds);
+        finds.erase(std::unique(finds.begin(), finds.end()), finds.end());
     }
     note_rings(c, all_callees, &Routine::ring);
     std::unordered_set<int> met;

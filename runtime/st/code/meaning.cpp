@@ -229,8 +229,10 @@ Fault Frames::end(Fault fault, std::uint64_t at) const {
     set_word(root, error_slot, fault != Fault::none);
     set_word(root, error_id_slot, static_cast<std::uint64_t>(fault));
     if (fault == Fault::none) return fault;
-    set_word(root, place_slot, at);
-    set_word(root, depth_slot, running());
+    const EndOfScan here{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(running()),
+                         base};
+    set_word(root, place_slot, here.place_word());
+    set_word(root, depth_slot, here.depth_word());
     if (code.has_kinds) mark(at, base, false);
     return fault;
 }
@@ -239,7 +241,8 @@ std::optional<std::uint64_t> Frames::caught(Fault fault) {
     const bool is_caught =
         fault != Fault::none && fault != Fault::no_end && fault != Fault::assertion;
     if (!is_caught || code.handlers.empty()) return {};
-    std::uint64_t at = word(root, place_slot), frame = base;
+    std::uint64_t frame = base;
+    std::uint64_t at = EndOfScan::of(word(root, place_slot), word(root, depth_slot)).instruction;
     for (std::byte* level = top;; level -= 16) {
         const auto it = std::ranges::find_if(
             code.handlers, [&](const Handler& h) { return at >= h.first && at < h.end; });

@@ -30,12 +30,27 @@ struct IndexTable {
 enum HeaderSlot : std::uint32_t {
     error_slot,     ///< BOOL: the last scan ended with a fault
     error_id_slot,  ///< Fault
-    place_slot,     ///< the instruction it ended with
-    depth_slot,     ///< calls that ran then
+    place_slot,     ///< the instruction it ended with, below the instance of its frame
+    depth_slot,     ///< calls that ran then, below the slot of its frame
     time_slot,      ///< what its instructions took [ns], if they are counted
     cut_slot,       ///< 1 + the first instruction that cut a text short, or 0
     counts_slot,    ///< executed instructions of each class, if they are counted
     globals_slot = counts_slot + op_classes,
+};
+
+/// Where a scan ended with a fault.
+struct EndOfScan {
+    std::uint32_t instruction = 0;
+    std::uint32_t depth = 0;  ///< calls that ran
+    std::uint64_t frame = 0;  ///< its address
+
+    /// Of the two words that say it.
+    static EndOfScan of(std::uint64_t place, std::uint64_t calls) {
+        return {static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(calls),
+                place >> 32 << 32 | calls >> 32};
+    }
+    std::uint64_t place_word() const { return frame >> 32 << 32 | instruction; }
+    std::uint64_t depth_word() const { return frame << 32 | depth; }
 };
 
 }  // namespace lineshaft::st

@@ -91,10 +91,11 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
     if (found.fault == Fault::none) return found;
     if (code.has_references && slot(code.left_slot()) > 0)
         found.left = code.pieces[slot(code.left_slot()) - 1].name;
-    std::uint64_t at = slot(place_slot);
+    const EndOfScan end = EndOfScan::of(slot(place_slot), slot(depth_slot));
+    std::uint64_t at = end.instruction;
     found.mark = place(at);
     const std::uint32_t stack = code.calls_slot();
-    const std::uint64_t depth = slot(depth_slot);
+    const std::uint64_t depth = end.depth;
     constexpr std::uint64_t most_told = 20;  // the first ones and the last one
     for (std::uint64_t level = depth;; --level) {
         found.calls.push_back(fmt::format("{} (line {})", routine(at), place(at).line));
