@@ -382,9 +382,24 @@ void follow_init(Checking& c, Variable& variable) {
     begin_in(c, variable, Phase::behind_init);
 }
 
+namespace {
+
+/// Values of globals are checked outside of any routine, which would note whom they call.
+void note_calls(Routine& of, const Expression* e) {
+    if (!e) return;
+    if (e->kind == Expression::Kind::call && e->routine && !e->is_dispatched)
+        of.calls.push_back({e->routine, e->place, false, true});
+    for (const Expression* operand : e->operands) note_calls(of, operand);
+    for (const Argument& argument : e->arguments) note_calls(of, argument.value);
+}
+
+}  // namespace
+
 void begin_globals(Checking& c) {
     if (!c.begin_of_globals) return;
     Routine& begin = *c.begin_of_globals;
+    for (const Block* begins : {&begin.begins, &begin.call_begins})
+        for (const Statement* s : *begins) note_calls(begin, s->value);
     const Expression like = like_name(begin.pou->name, begin.pou->place);
     Variable& begun = add_hidden(c, c.checked.variables, like, "begun", bool_type);
     keep_once(c, begun);
