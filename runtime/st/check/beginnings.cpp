@@ -393,13 +393,24 @@ void note_calls(Routine& of, const Expression* e) {
     for (const Argument& argument : e->arguments) note_calls(of, argument.value);
 }
 
+void note_calls(Routine& of, const Block& block) {
+    for (const Statement* s : block) {
+        for (const Expression* e : {s->target, s->value, s->limit, s->step}) note_calls(of, e);
+        for (const Branch& branch : s->branches) {
+            note_calls(of, branch.condition);
+            note_calls(of, branch.body);
+        }
+        note_calls(of, s->body);
+    }
+}
+
 }  // namespace
 
 void begin_globals(Checking& c) {
     if (!c.begin_of_globals) return;
     Routine& begin = *c.begin_of_globals;
-    for (const Block* begins : {&begin.begins, &begin.call_begins})
-        for (const Statement* s : *begins) note_calls(begin, s->value);
+    note_calls(begin, begin.begins);
+    note_calls(begin, begin.call_begins);
     const Expression like = like_name(begin.pou->name, begin.pou->place);
     Variable& begun = add_hidden(c, c.checked.variables, like, "begun", bool_type);
     keep_once(c, begun);
