@@ -209,14 +209,10 @@ class Reckoning {
     Operand field(const Operand& handle, const st::Expression& e) const {
         const Referred to = block_of(handle.seat);
         if (!to.at) throw Failed(fmt::format("'{}' is to nothing", e.operands[0]->place.text()));
-        const auto find = [&](std::string_view name) -> const Field* {
-            const auto& fields = to.block->type->fields;
-            const auto it = std::ranges::find_if(
-                fields, [&](const Field& f) { return st::same_name(f.name, name); });
-            return it == fields.end() ? nullptr : &*it;
-        };
-        const Field* found = find(e.token.text);
-        if (!found) found = find(st::standard_part_name(e.token.text));
+        const auto& fields = to.block->type->fields;
+        const Field* found = st::find_called(fields, e.token.text, &Field::name);
+        if (!found)
+            found = st::find_called(fields, st::standard_part_name(e.token.text), &Field::name);
         if (!found) throw Failed(unknown(e));
         return operand(lineshaft::load(found->type, to.at + found->offset), *found, false);
     }

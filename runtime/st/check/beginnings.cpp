@@ -382,35 +382,9 @@ void follow_init(Checking& c, Variable& variable) {
     begin_in(c, variable, Phase::behind_init);
 }
 
-namespace {
-
-/// Values of globals are checked outside of any routine, which would note whom they call.
-void note_calls(Routine& of, const Expression* e) {
-    if (!e) return;
-    if (e->kind == Expression::Kind::call && e->routine && !e->is_dispatched)
-        of.calls.push_back({e->routine, e->place, false, true});
-    for (const Expression* operand : e->operands) note_calls(of, operand);
-    for (const Argument& argument : e->arguments) note_calls(of, argument.value);
-}
-
-void note_calls(Routine& of, const Block& block) {
-    for (const Statement* s : block) {
-        for (const Expression* e : {s->target, s->value, s->limit, s->step}) note_calls(of, e);
-        for (const Branch& branch : s->branches) {
-            note_calls(of, branch.condition);
-            note_calls(of, branch.body);
-        }
-        note_calls(of, s->body);
-    }
-}
-
-}  // namespace
-
 void begin_globals(Checking& c) {
     if (!c.begin_of_globals) return;
     Routine& begin = *c.begin_of_globals;
-    note_calls(begin, begin.begins);
-    note_calls(begin, begin.call_begins);
     const Expression like = like_name(begin.pou->name, begin.pou->place);
     Variable& begun = add_hidden(c, c.checked.variables, like, "begun", bool_type);
     keep_once(c, begun);
@@ -439,6 +413,31 @@ void bring_up_to_date(Checking& c, Routine& routine) {
     }
 }
 
+namespace {
+
+/// What variables of a block begin with was checked in the block, of globals in no routine at all:
+/// a routine that it is written into calls its functions, too.
+void note_functions(Routine& of, const Expression* e) {
+    if (!e) return;
+    if (e->kind == E::call && e->routine && e->routine->is_function())
+        of.calls.push_back({e->routine, e->place, false, true});
+    for (const Expression* operand : e->operands) note_functions(of, operand);
+    for (const Argument& argument : e->arguments) note_functions(of, argument.value);
+}
+
+void note_functions(Routine& of, const Block& block) {
+    for (const Statement* s : block) {
+        for (const Expression* e : {s->target, s->value, s->limit, s->step}) note_functions(of, e);
+        for (const Branch& branch : s->branches) {
+            note_functions(of, branch.condition);
+            note_functions(of, branch.body);
+        }
+        note_functions(of, s->body);
+    }
+}
+
+}  // namespace
+
 Block beginnings(Checking& c, Routine& routine) {
     Block made;
     if (routine.is_prototype() || routine.pou->is_tests) return made;
@@ -449,6 +448,7 @@ Block beginnings(Checking& c, Routine& routine) {
     if (routine.owner && same_name(routine.pou->name.text, constructor))
         add_constructor_of_base(c, routine, made);
     made.insert(made.end(), routine.call_begins.begin(), routine.call_begins.end());
+    note_functions(routine, made);
     return made;
 }
 
