@@ -215,7 +215,7 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     relocated += by;
     goal += by;
     origin += by;
-    const bool homes = request.holds != 0;
+    const bool homes = request.homes != 0;
     homed = homed || homes;
     if (homes && active.exists() && active.request.command == Command::move_absolute) {
         goal -= by;

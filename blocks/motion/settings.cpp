@@ -17,7 +17,7 @@ std::span<const Field> SetPosition::fields() {
                                 input("Relative", &SetPosition::relative, "", "Position is added"),
                                 pin::execution_mode()},
                                pin::done("the position is set"));
-        made.push_back(local("Homes", &CommandBlock::pins, &Request::holds, "",
+        made.push_back(local("Homes", &CommandBlock::pins, &Request::homes, "",
                              "1: the position is known then, and an absolute move goes to its "
                              "Position as it is now, as Siemens homes"));
         return made;
