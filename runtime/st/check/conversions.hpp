@@ -8,6 +8,10 @@ namespace lineshaft::st {
 bool is_single(const Type& type);
 /// An integer without sign goes to a bit string of its width or a wider one.
 bool are_same_pattern(const Type& given, const Type& to);
+/// A constant of another type loses nothing.
+bool fits_as_constant(const Expression& e, const Type& to);
+/// CODESYS reads the number in a bit string where a REAL is due, which rounds one of its width.
+bool counts_bits(const Type& from, const Type& to, const Place& place);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.
@@ -33,6 +37,11 @@ void become_lint(Checking& c, Expression*& e);
 /// A value of an enumeration that a source declares where a number is due.
 void enumeration_becomes_number(Checking& c, Expression*& e);
 
+/// `e`, which is of type `from`, as a value of `to`.
+const Type* convert_result(Checking& c, Expression*& e, const Type& from, const Type& to);
+
+// operands.cpp
+
 /// Integers are joined as bit strings of their width. It is reckoned with bit strings as with
 /// integers: with the wanted one, if that is wider.
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected = nullptr);
@@ -46,9 +55,6 @@ bool make_concrete(Checking& c, Expression*& e, const Type& other);
 /// Brings both operands to one type, that of the result or one that `expected` suggests; null if
 /// there is none, which was told, L0905 or L0906.
 const Type* unite(Checking& c, Expression& e, const Type* expected = nullptr);
-
-/// `e`, which is of type `from`, as a value of `to`.
-const Type* convert_result(Checking& c, Expression*& e, const Type& from, const Type& to);
 
 // constants.cpp
 

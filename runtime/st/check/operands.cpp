@@ -1,0 +1,123 @@
+#include "runtime/st/check/conversions.hpp"
+
+namespace lineshaft::st {
+
+void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
+    for (Expression*& operand : e.operands) {
+        if (!operand) continue;
+        const Type& type = operand->type->plain();
+        if (type.kind != from) continue;
+        const bool wider =
+            expected && expected->kind == Kind::integer && expected->bits > type.bits;
+        convert(c, operand,
+                from == Kind::integer ? bits_type(type.bits)
+                : wider               ? expected->plain()
+                                      : integer_type(type.bits, false));
+    }
+}
+
+void unite_texts(Checking& c, Expression*& a, Expression*& b) {
+    Expression*& character = a->type->is_character ? a : b;
+    Expression*& text = a->type->is_character ? b : a;
+    if (!character->type->is_character || text->type->kind != Kind::text) return;
+    const bool single = is_constant(*text) && text->constant.text.size() == 1;
+    single ? coerce(c, text, char_type) : coerce(c, character, string_type);
+}
+
+bool make_concrete(Checking& c, Expression*& e, const Type& other) {
+    const Type& type = *e->type;
+    if (!type.is_any()) return true;
+    const Type& plain = other.plain();
+    const bool whole = e->kind == E::constant && !type.is_real();
+    const Wide value = e->constant.integer;
+    if (plain.is_real() && !plain.is_any()) return coerce(c, e, plain);
+    if (type.is_real()) return coerce(c, e, lreal_type);
+    const bool fits = (plain.kind == Kind::integer || plain.kind == Kind::bits) && whole &&
+                      value >= smallest(plain) && value <= largest(plain);
+    if (fits) return coerce(c, e, plain);
+    return coerce(c, e, whole && value > largest(lint_type) ? ulint_type : lint_type);
+}
+
+namespace {
+
+/// A ULINT and a signed integer: CODESYS takes that for a ULINT.
+bool mixes_signs_of_64(const Expression& e) {
+    const Type &a = e.operands[0]->type->plain(), &b = e.operands[1]->type->plain();
+    const bool are_integers = a.kind == Kind::integer && b.kind == Kind::integer;
+    return e.place.dialect().is_loose && are_integers && a.is_signed != b.is_signed &&
+           (a.is_unsigned_64() || b.is_unsigned_64());
+}
+
+/// The type that holds a constant which `typed` does not, and all of that: what is expected, or a
+/// signed one. Null if there is none, or none is needed.
+const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected) {
+    const Wide value = constant.constant.integer;
+    const bool is_more_bits =
+        constant.type->kind == Kind::any_bits && value >= Wide{1} << typed.plain().bits;
+    const bool is_whole = constant.type->kind == Kind::any_integer || is_more_bits;
+    if (!is_whole || typed.kind != Kind::integer) return nullptr;
+    const auto holds = [&](const Type& type) {
+        return value >= smallest(type) && value <= largest(type);
+    };
+    if (holds(typed.plain())) return nullptr;
+    const Type* const due = expected && expected->is_integer() ? &expected->plain() : &dint_type;
+    for (const Type* wider : {due, &dint_type, &lint_type})
+        if (holds(*wider) && widens(typed, *wider)) return wider;
+    return nullptr;
+}
+
+}  // namespace
+
+const Type* unite(Checking& c, Expression& e, const Type* expected) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const Type &a = *left->type, &b = *right->type;
+    const Type* common = nullptr;
+    if (a.is_any() && b.is_any()) {
+        common = a.is_real() ? &a : b.is_real() ? &b : &any_integer_type;
+        if (a.kind == b.kind) common = &a;
+    } else if (a.is_any()) {
+        common = b.is_code ? &lint_type : &b.plain();
+    } else if (b.is_any()) {
+        common = a.is_code ? &lint_type : &a.plain();
+    } else if (a.has_numbers && b.has_numbers && !same_type(a, b) &&
+               e.place.dialect().enumerations_are_numbers) {
+        common = &lint_type;
+    } else {
+        common = common_type(a, b);
+        if (!common && mixes_signs_of_64(e)) common = &ulint_type;
+        if (!common && counts_bits(a, b, e.place)) common = &b;
+        if (!common && counts_bits(b, a, e.place)) common = &a;
+    }
+    const auto real_of = [&](const Type& any, const Type& typed) -> const Type* {
+        if (any.kind != Kind::any_real) return nullptr;
+        if (counts_bits(typed, any, e.place)) return typed.bits < 32 ? &real_type : &lreal_type;
+        return typed.kind == Kind::integer ? common_type(typed, real_type) : nullptr;
+    };
+    if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    if (const Type* wider =
+            a.is_any() ? wider_for(*left, b, expected) : wider_for(*right, a, expected))
+        if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
+    const auto reckons_in = [&](const Type& type, const Expression& constant) {
+        return common && expected && expected->is_integer() && !widens(*common, *expected) &&
+               widens(type, *expected) && fits_as_constant(constant, type);
+    };
+    if (reckons_in(a, *right)) common = &a.plain();
+    if (reckons_in(b, *left)) common = &b.plain();
+    const bool narrows = expected && is_single(*expected) && common == &lreal_type &&
+                         e.place.dialect().real_results_reckon_as_real;
+    if (narrows && !same_type(a, lreal_type) && !same_type(b, lreal_type)) common = &real_type;
+    if (!common) {
+        const bool numbers = a.is_number() && b.is_number();
+        return c.fail(
+            numbers ? code::conversion_may_lose : code::type_does_not_fit, e.token.place,
+            fmt::format("{} does not go with {} and {}", shown(e.op), describe(a), describe(b)),
+            numbers
+                ? fmt::format("convert one of them: {}_TO_{}(...)", a.plain().name, b.plain().name)
+            : a.kind == Kind::enumeration || b.kind == Kind::enumeration
+                ? "an enumeration's number is TO_INT(...)"
+                : "");
+    }
+    return coerce(c, left, *common) && coerce(c, right, *common) ? common : nullptr;
+}
+
+}  // namespace lineshaft::st
