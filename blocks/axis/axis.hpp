@@ -280,8 +280,7 @@ struct Axis {
     MotionState planned(double t) const;
     Forecast foresee(const Context& context) const;
 
-    // axis_sync.cpp: other axes are followed.
-    bool follows_itself(const Context& context) const;
+    // axis_sync.cpp: how other axes begin to be followed.
     MotionError plan_sync(const Context& context, const Request& request, const Moment& at,
                           const Start& from);
     MotionError get_onto_guide(const Context& context, const Moment& at, const MotionState& from);
@@ -298,6 +297,9 @@ struct Axis {
                           const MotionState& from, const Cam& table);
     Cam cam(const Context& context) const;
     void begin_phasing(const Context& context, Job& job);
+
+    // axis_following.cpp: they are followed.
+    bool follows_itself(const Context& context) const;
     void look_at_shift(const Context& context);
     void follow(const Context& context);
     void follow_guide(const Context& context);
@@ -346,7 +348,7 @@ struct Axis {
     void end_added(const Context& context);
     void clear_added();
 
-    // axis_commands.cpp: what each command does.
+    // axis_commands.cpp: what is done at once.
     MotionError administer(const Context& context, const Moment& at, const Request& request);
     MotionError set_position(const Context& context, const Moment& at, const Request& request);
     MotionError set_override(const Context& context, const Moment& at, const Request& request);
@@ -361,6 +363,8 @@ struct Axis {
     void brake(const Moment& at);
     void come_to_stand(const Moment& at);
     void hold(const MotionState& as, const Moment& at);
+
+    // axis_plans.cpp: what each command plans.
     MotionError plan_any(const Context& context, const Request& request, const Moment& at,
                          const Start& from);
     MotionError plan_profile(const Context& context, const Request& request, const Moment& at,

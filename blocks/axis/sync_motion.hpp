@@ -15,6 +15,9 @@
 
 namespace lineshaft {
 
+/// Of positions that have been added to others.
+inline constexpr double sum_rounding = 0x1p-40;
+
 /// Limits upwards and downwards, of dynamics that say where the speed grows and where it falls.
 TransitionLimits limits_towards(double direction, const Dynamics& dynamics);
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "runtime/debug/protocol.hpp"
 #include "runtime/source/units.hpp"
 #include "runtime/trace/output_file.hpp"
 
@@ -13,20 +13,8 @@ namespace lineshaft::debug {
 
 namespace {
 
-/// What a request cannot have: the text is for the user.
-struct Refused : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
 /// Of tasks, whose frames stand behind those of routines.
 constexpr std::int64_t first_task_frame = 1'000'000;
-
-Json source_of(const std::string& path) {
-    std::error_code unknown;
-    const auto whole = std::filesystem::absolute(path, unknown);
-    return {{"name", std::filesystem::path(path).filename().string()},
-            {"path", unknown ? path : whole.lexically_normal().string()}};
-}
 
 class Adapter final : Front {
   public:
@@ -192,19 +180,7 @@ class Adapter final : Front {
 
     Json initialize(const Json& arguments) {
         first_line_is_0_ = !flag_in(arguments, "linesStartAt1", true);
-        return {
-            {"supportsConfigurationDoneRequest", true},
-            {"supportsStepBack", true},
-            {"supportsTerminateRequest", true},
-            {"supportsConditionalBreakpoints", true},
-            {"supportsHitConditionalBreakpoints", true},
-            {"supportsLogPoints", true},
-            {"supportsFunctionBreakpoints", true},
-            {"supportsEvaluateForHovers", true},
-            {"supportsSetVariable", true},
-            {"exceptionBreakpointFilters",
-             {{{"filter", "block_error"}, {"label", "An error of a block"}, {"default", true}}}},
-            {"supportTerminateDebuggee", true}};
+        return capabilities();
     }
 
     Json launch(const Json& arguments) {
@@ -231,22 +207,10 @@ class Adapter final : Front {
 
     Json set_breakpoints(const Json& arguments) {
         const int first = first_line_is_0_ ? 1 : 0;
-        std::vector<Wanted> wanted;
-        for (const Json& each : list_in(arguments, "breakpoints"))
-            wanted.push_back({.line = static_cast<int>(number_in(each, "line")) + first,
-                              .condition = text_in(each, "condition"),
-                              .hits = text_in(each, "hitCondition"),
-                              .log = text_in(each, "logMessage")});
         const std::string path = text_in(arguments.value("source", Json::object()), "path");
         Json all = Json::array();
-        for (const Breakpoint& breakpoint : session().set_breakpoints(path, wanted)) {
-            Json one{{"id", breakpoint.id},
-                     {"verified", breakpoint.is_verified},
-                     {"line", breakpoint.line - first},
-                     {"source", source_of(path)}};
-            if (!breakpoint.is_verified) one["message"] = breakpoint.error;
-            all.push_back(std::move(one));
-        }
+        for (const Breakpoint& each : session().set_breakpoints(path, wanted_in(arguments, first)))
+            all.push_back(breakpoint_as_json(each, path, first));
         return {{"breakpoints", all}};
     }
 

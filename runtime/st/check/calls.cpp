@@ -42,30 +42,6 @@ bool take_memory(Checking& c, Expression*& e, const Routine& called) {
     return true;
 }
 
-bool is_variable(const Expression& e) {
-    return e.kind == E::name || e.kind == E::member || e.kind == E::self || e.kind == E::deref ||
-           (e.kind == E::index && !e.is_character());
-}
-
-/// A structure or an array that came as an input, or in one, is passed on by reference.
-bool is_own_input(const Expression& e) {
-    const Expression* root = &e;
-    while (root->kind != E::name && root->operands[0]) root = root->operands[0];
-    return root->variable && root->variable->section == Section::input &&
-           (!e.type->is_scalar() || e.type->is_handle());
-}
-
-/// CODESYS lends what a program has, and outputs of a block.
-bool is_lent(const Expression& e) {
-    const Expression* root = &e;
-    while (root->kind == E::index || root->kind == E::bit) root = root->operands[0];
-    if (root->kind != E::member || !root->operands[0]->type) return false;
-    const Type& of = *root->operands[0]->type;
-    return e.place.dialect().is_loose && of.kind == Kind::block && of.routine &&
-           (of.routine->pou->kind == PouKind::program ||
-            (root->variable && root->variable->section == Section::output));
-}
-
 /// A variable may bear a function's name, but no instance can be meant then.
 bool is_instance(Checking& c, const Token& name) {
     const Variable* variable = find_variable(c, name);
@@ -119,45 +95,6 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
                   help_with_argument(c, argument.name.text, routine, names));
 }
 
-/// What a slot has of a variable of CODESYS' is what it has of that number: a subrange's value, and
-/// an enumeration's where its values are counted from 0 on.
-bool is_kept_as(const Type& given, const Type& number) {
-    if (given.is_unchecked) return same_type(*given.base, number);
-    return given.kind == Kind::enumeration && given.has_numbers && given.counted &&
-           !given.is_strict && same_type(given.base->plain(), number);
-}
-
-/// A variable of type `given` stands for an output or a VAR_IN_OUT.
-void check_given(Checking& c, const Argument& argument, const Variable& parameter,
-                 const Type& given) {
-    Expression* const value = argument.value;
-    const Type* type = parameter.type;
-    if (argument.is_negated && (type->kind != Kind::boolean || given.kind != Kind::boolean))
-        return void(c.fail(code::type_does_not_fit, argument.name.place,
-                           fmt::format("NOT takes a BOOL to a BOOL, not {} to {}", describe(*type),
-                                       describe(given)),
-                           "take the output as it is"));
-    const bool texts = given.kind == Kind::text && type->kind == Kind::text;
-    const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
-                         type->kind == Kind::block && is_a(*given.routine, *type->routine);
-    const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
-                          type->is_integer() && given.is_integer();  // of a date: any integer
-    const bool is_number =
-        value->place.dialect().enumerations_are_numbers && is_kept_as(given, *type);
-    const bool fits =
-        same_type(given, *type) || derives || is_number ||
-        (parameter.section == Section::in_out
-             ? texts && type->is_open
-             : texts || is_split ||
-                   (type->is_scalar() && (widens(*type, given) || are_same_pattern(*type, given))));
-    note_lending(c, *value);
-    if (!fits)
-        c.fail(code::type_does_not_fit, value->place,
-               fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
-                           describe(given)),
-               texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
-}
-
 /// TwinCAT takes what is given last.
 void note_twice(Checking& c, const Argument& argument) {
     const std::string message = fmt::format("'{}' is given twice", argument.variable->text);
@@ -166,55 +103,6 @@ void note_twice(Checking& c, const Argument& argument) {
         c.warn(code::wrong_arguments, place, message + ", and the last one counts", "");
     else
         c.fail(code::wrong_arguments, place, message);
-}
-
-void check_argument(Checking& c, Argument& argument, Variable& parameter) {
-    Expression*& value = argument.value;
-    const Type* type = parameter.type;
-    const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
-                        parameter.section != Section::in_out;
-    const bool is_output = parameter.section == Section::output;
-    const bool is_classic = value->place.dialect().vendor == Vendor::siemens && is_output;
-    if (is_classic && argument.is_named() && !is_set) argument.is_output = true;  // of STEP 7 V5
-    const bool is_written_to = parameter.section == Section::in_out && is_prelude(parameter.name);
-    const bool fits_sign =
-        argument.is_output ? parameter.can_be_taken() || is_written_to : !is_output || is_set;
-    if (argument.is_named() && !fits_sign) {
-        check(c, value);
-        c.fail(code::wrong_arguments, argument.name.place,
-               fmt::format("'{}' is {} of the call", parameter.text,
-                           is_output ? "an output" : "an input"),
-               is_output ? "write '=>' and the variable that it goes to" : "write ':='");
-        return;
-    }
-    if (parameter.section == Section::input || is_set) {
-        if (type && is_any_input(*type)) return become_any(c, value, *type);
-        if (check(c, value, type) && type) coerce(c, value, *type);
-        return;
-    }
-    const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);
-    if (!given || !type) return;
-    if (type->kind == Kind::handle && given->is_object()) {
-        if (parameter.space == Space::reference) {
-            take_place_of_object(c, value);
-            return check_given(c, argument, parameter, *value->type);
-        }
-        if (coerce(c, value, *type)) return;
-    }
-    const bool is_constant = parameter.section == Section::in_out && parameter.constant;
-    const bool is_read = is_constant || (parameter.section == Section::in_out &&
-                                         (is_own_input(*value) || is_lent(*value)));
-    const bool is_taken = argument.is_output || is_output;
-    const bool is_place = is_variable(*value) || (is_taken && value->kind == E::bit);
-    if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
-    if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {
-        if (!is_place)
-            c.fail(code::wrong_arguments, value->place,
-                   fmt::format("'{}' takes a variable, not a value", parameter.text),
-                   "declare one and give it here");
-        return;
-    }
-    check_given(c, argument, parameter, *given);
 }
 
 /// A VAR_IN_OUT that a test does not give stays what it was; at first it is a variable of its own.

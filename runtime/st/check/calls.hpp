@@ -14,6 +14,11 @@ std::string_view standard_name(const Type& type, std::string_view name);
 /// `as_statement`: its value is not taken. `expected` as in check().
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected);
 
+// arguments.cpp
+
+/// What a call gives suits `parameter`, and becomes that; else it is told.
+void check_argument(Checking& c, Argument& argument, Variable& parameter);
+
 // overloads.cpp
 
 /// Which of the functions or methods that share the name of `first` a call means: the one whose

@@ -69,6 +69,20 @@ bool any_holds(PragmaWords& words, const Definitions& defined) {
 
 }  // namespace
 
+std::size_t end_of_quoted(std::string_view text, std::size_t begin) {
+    const char quote = text[begin];
+    if (quote != '\'' && quote != '"') return 0;
+    const std::size_t end = text.find(quote, begin + 1);
+    if (end == std::string_view::npos) return 0;
+    const std::string_view quoted = text.substr(begin, end - begin);
+    if (quoted.find('\n') == std::string_view::npos) return end;
+    const bool closes = quoted.substr(0, quoted.find('\n')).find('}') != std::string_view::npos;
+    const std::size_t behind = text.find_first_not_of(" \t\r\n", end + 1);
+    const bool goes_on = behind != std::string_view::npos &&
+                         std::string_view("},;:)").find(text[behind]) != std::string_view::npos;
+    return !closes && goes_on ? end : 0;
+}
+
 bool says_pragma(std::string_view pragma, std::string_view word) {
     return same_name(PragmaWords{pragma}.next(), word);
 }

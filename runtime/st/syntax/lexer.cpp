@@ -187,7 +187,7 @@ class Lexer {
         if (skip_foreign_code()) return;
         const std::size_t begin = at_;
         for (; at_ < text_.size() && text_[at_] != '}'; ++at_)
-            if (const std::size_t end = end_of_quoted(at_)) at_ = end;
+            if (const std::size_t end = end_of_quoted(text_, at_)) at_ = end;
         if (at_ == text_.size())
             fail(place(begin, begin + 1), "the pragma does not end", "it ends with '}'");
         tokens_.pragmas.push_back(
@@ -228,23 +228,6 @@ class Lexer {
                                 (says_pragma(pragma, "elsif") && holds(pragma, defined_));
             if (may_choose && inner == 0 && chosen) return;
         }
-    }
-
-    /// Of what is quoted in a pragma from `begin` on; 0 if nothing is. It may go over lines, where
-    /// neither the brace stands in its first one, nor the other quote belongs to something else.
-    std::size_t end_of_quoted(std::size_t begin) const {
-        const char quote = text_[begin];
-        if (quote != '\'' && quote != '"') return 0;
-        const std::size_t end = text_.find(quote, begin + 1);
-        if (end == std::string_view::npos) return 0;
-        const std::string_view quoted = text_.substr(begin, end - begin);
-        if (quoted.find('\n') == std::string_view::npos) return end;
-        const bool closes = quoted.substr(0, quoted.find('\n')).find('}') != std::string_view::npos;
-        const std::size_t behind = text_.find_first_not_of(" \t\r\n", end + 1);
-        const bool goes_on =
-            behind != std::string_view::npos &&
-            std::string_view("},;:)").find(text_[behind]) != std::string_view::npos;
-        return !closes && goes_on ? end : 0;
     }
 
     void read_token() {

@@ -32,6 +32,10 @@ std::string_view comment_before(const Tokens& tokens, std::size_t token, bool fi
 /// `{IF defined (x)}` begins with `IF`, whatever its letters.
 bool says_pragma(std::string_view pragma, std::string_view word);
 
+/// The end of what is quoted in a pragma from `begin` on; 0 if nothing is. It may go over lines,
+/// where neither the brace stands in its first one, nor the other quote belongs to something else.
+std::size_t end_of_quoted(std::string_view text, std::size_t begin);
+
 /// Names that `{define}` has made known, with the value that it gives them.
 using Definitions = NameMap<std::string_view>;
 
