@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/projects/drawings/box_calls.hpp"
 #include "runtime/projects/drawings/jumps.hpp"
 #include "runtime/projects/drawings/values.hpp"
 #include "runtime/source/codes.hpp"
@@ -15,8 +16,6 @@
 namespace lineshaft::projects {
 
 namespace {
-
-constexpr std::size_t longest_expression = 1U << 16;
 
 bool is_true(pugi::xml_node node, const char* attribute) {
     return std::string_view(node.attribute(attribute).value()) == "true";
@@ -174,12 +173,7 @@ class Grid {
             const pugi::xml_node next = at(begins_, {r, column});
             takers += next && kind_of(next) != "empty" && !is_operand(next);
         }
-        if (value.text.text().size() > longest_expression) {
-            out_.add(code::too_deep_or_large, place,
-                     fmt::format("what leads here is longer than {} characters as an expression",
-                                 longest_expression));
-            value = words("FALSE", place, "BOOL");
-        }
+        value = within_length(std::move(value), place, out_);
         const bool is_made = value.form == Value::Form::atom && value.text.text().starts_with('_');
         if (takers > 1 && !value.is_empty() && !value.is_always && !is_made)
             value = kept_in(now_, variables_.make("_wire", "BOOL"), value, place);

@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "runtime/projects/drawings/box_calls.hpp"
 #include "runtime/source/codes.hpp"
 
 namespace lineshaft::projects {
 
 namespace {
 
-constexpr int deepest_line = 400;
-constexpr std::size_t longest_value = 1U << 16, longest_read_again = 1U << 10;
+constexpr std::size_t longest_read_again = 1U << 10;
 
 /// The editors in Python 2 sort by position; those in Python 3, which came with 2024, do not.
 DrawnOrder order_of(const BodyContext& context) {
@@ -148,28 +148,13 @@ Value NetworkText::value_of(const Element& element, const Pin& pin) {
     if (value.is_empty()) return value;
     if (pin.is_negated) value = negated(value, place);
     value = edge_of(value, pin.edge, element);
-    if (value.text.text().size() > longest_value) {
-        context_.out.add(code::too_deep_or_large, place,
-                         fmt::format("what this takes is longer than {} characters as an "
-                                     "expression",
-                                     longest_value),
-                         "put a variable between");
-        return words("FALSE", place, "BOOL");
-    }
-    return value;
+    return within_length(std::move(value), place, context_.out);
 }
 
 Value NetworkText::value_of(const Line& line) {
     const Element& from = drawing_.elements[line.from];
-    if (depth_ > deepest_line) {
-        if (!is_too_deep_)
-            context_.out.add(
-                code::too_deep_or_large, place_of(from),
-                fmt::format("more than {} elements stand one behind the other", deepest_line),
-                "put a variable between");
-        is_too_deep_ = true;
-        return words("FALSE", place_of(from), "BOOL");
-    }
+    const Mark place = place_of(from);
+    if (is_too_deep(depth_, place, context_.out)) return words("FALSE", place, "BOOL");
     ++depth_;
     Value value =
         from.kind == Drawn::block ? value_of_box(line.from, line.pin) : value_of_element(line.from);

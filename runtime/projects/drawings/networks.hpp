@@ -145,7 +145,6 @@ class NetworkText {
     Excerpts now_;           ///< statements since the last label or jump
     std::int64_t turn_ = 0;  ///< `executionOrderId` of the element whose turn it is
     int depth_ = 0;
-    bool is_too_deep_ = false;  ///< which was told
 };
 
 }  // namespace lineshaft::projects
