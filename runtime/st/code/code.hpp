@@ -65,7 +65,8 @@ struct CodeRoutine {
 
 /// The method of a kind of instance that a call finds.
 struct FoundRoutine {
-    std::uint64_t routine = 0;
+    std::uint32_t routine = 0;
+    std::uint32_t depth = 0;  ///< levels of calls below it
     std::uint64_t first = 0;  ///< slot of the first that is given to it; 0: it has no such method
 };
 

@@ -100,19 +100,20 @@ std::optional<std::int64_t> reference_distance(const std::byte* a, const std::by
     return std::int64_t{bytes_from_first(a)} - bytes_from_first(b);
 }
 
-void Frames::find(std::byte* to, std::uint64_t address, std::uint32_t method) const {
+bool Frames::find(std::byte* to, std::uint64_t address, std::uint32_t method) const {
     const std::uint64_t kind = word(place(address), code.kind_slot());
     const FoundRoutine& found = code.found[kind * code.methods + method];
     set_word(to, 0, found.routine);
     set_word(to, 1, address + found.first);
+    return has_room(found.depth);
 }
 
 bool Frames::has(std::uint64_t address, std::uint32_t method) const {
     return code.found[word(place(address), code.kind_slot()) * code.methods + method].first != 0;
 }
 
-bool Frames::has_room(std::uint64_t routine) const {
-    return running() + 1 + code.routines[routine].depth <= scanned.levels;
+bool Frames::has_room(std::uint32_t depth) const {
+    return running() + 1 + depth <= scanned.levels;
 }
 
 std::byte* Frames::pile_begin() const {
@@ -151,7 +152,8 @@ static void exchange(std::byte* in_frame, std::byte* kept, std::size_t bytes) {
 }
 
 bool Frames::push(std::byte* to, std::uint64_t routine) {
-    if (!has_room(routine) || !keep({code.routines[routine].frame, no_frame, routine, running()}))
+    if (!has_room(code.routines[routine].depth) ||
+        !keep({code.routines[routine].frame, no_frame, routine, running()}))
         return false;
     set_word(to, 0, static_cast<std::uint64_t>(kept_by(last_record()) - root) / 8);
     return true;
@@ -161,7 +163,7 @@ Fault Frames::save(std::uint64_t routine, std::uint64_t address) {
     const CodeRoutine& called = code.routines[routine];
     std::byte* frame = place(address);
     const bool runs = called.mark == 0 || word(frame, called.mark) != 0;
-    const bool is_kept = (!runs || has_room(routine)) &&
+    const bool is_kept = (!runs || has_room(called.depth)) &&
                          keep({runs ? called.kept() : 0, address, routine, running()});
     if (!is_kept) return Fault::calls_too_deep;
     if (!runs) return Fault::none;

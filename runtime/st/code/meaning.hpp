@@ -333,12 +333,10 @@ struct Frames {
     std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
 
     /// Of the instance at the address, which is one: what that method is, to slot 0, and the
-    /// address of what is given to it, to the next one.
-    void find(std::byte* to, std::uint64_t address, std::uint32_t method) const;
+    /// address of what is given to it, to the next one. False: there is no room to call it.
+    bool find(std::byte* to, std::uint64_t address, std::uint32_t method) const;
     /// Whether it has that method, or is of that block.
     bool has(std::uint64_t address, std::uint32_t method) const;
-
-    bool has_room(std::uint64_t routine) const;
 
     // Calls within a ring of routines that call one another. Each has slots on a pile, and behind
     // them a record.
@@ -437,6 +435,8 @@ struct Frames {
 
   private:
     std::uint64_t running() const { return static_cast<std::uint64_t>(top - bottom) / 16; }
+    /// For a routine below which so many levels of calls are.
+    bool has_room(std::uint32_t depth) const;
     std::byte* pile_begin() const;
     Record last_record() const;
     std::byte* kept_by(const Record& record) const;

@@ -112,8 +112,8 @@ void finish_dispatch(Writing& w) {
     for (const auto& [block, kind] : w.kinds)
         for (const auto& [wanted, number] : w.method_numbers)
             if (const Routine* found = find_routine(*block, *wanted))
-                w.code.found[kind * w.code.methods + number] = {w.routine_number(*found),
-                                                                found->owner ? found->first : 1};
+                w.code.found[kind * w.code.methods + number] = {
+                    w.routine_number(*found), found->depth, found->owner ? found->first : 1};
 }
 
 }  // namespace lineshaft::st

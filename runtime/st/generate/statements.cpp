@@ -206,10 +206,7 @@ bool repeat_test(Writing& w, std::uint32_t start, std::uint32_t end) {
     Instruction test = w.code.instructions[end - 1];
     const Op op = test.op == Op::jump_unless ? Op::repeat_if : after(test.op, 4);
     if (!info(op).name.starts_with("repeat_if")) return false;
-    for (std::uint32_t i = start; i + 1 < end; ++i) {
-        const Instruction in = w.code.instructions[i];
-        w.put(in.op, in.a, in.b, Slot(in.c), in.d);
-    }
+    for (std::uint32_t i = start; i + 1 < end; ++i) w.put(w.code.instructions[i]);
     w.put(op, test.a, test.b, end);
     return true;
 }

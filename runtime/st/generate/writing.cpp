@@ -20,8 +20,12 @@ void Writing::link() {
 }
 
 void Writing::put(Op op, Slot a, Slot b, Slot c, Slot d) {
-    note_use({op, a, b, d, c});
-    code.instructions.push_back({op, a, b, d, c});
+    put({op, a, b, d, c});
+}
+
+void Writing::put(Instruction instruction) {
+    note_use(instruction);
+    code.instructions.push_back(instruction);
     code.places.push_back(place);
     if (fuses && next() - 1 > landed) fuse();
 }

@@ -31,6 +31,7 @@ using Jumps = std::vector<std::uint32_t>;
 struct Writing {
     using Image = std::vector<std::uint64_t>;
 
+    void put(Instruction instruction);
     void put(Op op, Slot a = 0, Slot b = 0, Slot c = 0, Slot d = 0);
     /// What the instruction gives is in `wanted`, if that is a slot, else in a new temporary.
     Slot emit(Op op, Slot wanted, Slot b, Slot c = 0);
