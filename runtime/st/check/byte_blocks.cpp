@@ -65,7 +65,6 @@ std::optional<Seen> see_bytes(Checking& c, Expression* given, bool is_written) {
     }
     const Type& bytes = bytes_type(c, (bits + 7) / 8);
     Variable &whole = hidden(c, "whole", *type), &made = hidden(c, "bytes", bytes);
-    c.checked.has_references = true;
     const auto view = [&] {
         const Type& pointer = pointer_to(c, bytes);
         return make_target(c, *given, make_reference_to(c, make_use(c, *given, whole), pointer),

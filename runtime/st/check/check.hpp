@@ -16,7 +16,7 @@ struct Checked {
     std::deque<Variable> variables;  ///< of structures, data blocks and the catalogue
     std::vector<Global> globals;     ///< `VAR_GLOBAL` and data blocks, by number
     std::vector<Routine*> order;     ///< each behind all that it calls or holds
-    bool has_references = false;     ///< some variable is one
+    bool has_references = false;     ///< some variable is one, or one is made
     bool refers_to_in_outs = false;  ///< to what a VAR_IN_OUT is given
     std::deque<std::string> names;   ///< of variables that no source declares
     bool dispatches = false;         ///< calls find routines by instances

@@ -61,7 +61,6 @@ std::optional<const Type*> check_data_address(Checking& c, Expression*& e) {
             fmt::format("there is no '{}' in '{}'", e->token.text, block->token.text),
             end > size ? fmt::format("it has {} bytes", size / 8) : "words are at even bytes");
     const Type& type = seen_at(c, *address);
-    c.checked.has_references = true;
     Expression* view = make_target(c, *e, make_reference_to(c, block, pointer_to(c, type)), &type);
     e = make_member(c, view, "there");
     return check(c, e);

@@ -119,6 +119,7 @@ Expression* make_reference_to(Checking& c, Expression* e, const Type& type) {
     Expression* made = make(c, E::refer, *e);
     made->operands[0] = e;
     made->type = &type;
+    c.checked.has_references = true;
     return made;
 }
 

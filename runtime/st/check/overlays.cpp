@@ -67,7 +67,6 @@ void declare_overlay(Checking& c, Routine& routine, const Declaration& declared)
         c.fail(code::wrong_place, declared.name.place, "an overlay has no initial value",
                fmt::format("give one to '{}'", declared.at.text));
     overlay.initial = nullptr;
-    c.checked.has_references = true;
 }
 
 }  // namespace

@@ -212,7 +212,6 @@ bool become_base(Checking& c, Expression*& e, const Type& base) {
     Expression* place = e;
     if (!refer(c, place, make_reference(c, Referring::pointer, e->type))) return false;
     become_converted(c, place, make_reference(c, Referring::pointer, &base));
-    c.checked.has_references = true;
     e = make_target(c, *e, place, &base);
     return true;
 }

@@ -27,14 +27,18 @@ std::uint64_t whole_bytes(std::uint64_t bits) {
     return (bits + 7) / 8;
 }
 
-/// A block of CODESYS begins with where its methods are.
+/// A block of CODESYS begins with where its methods are. One that is in itself has no end, which is
+/// told in the end.
 std::uint64_t bytes_of_block(const Type& type) {
-    const Routine& block = *type.routine;
+    Routine& block = *type.routine;
+    if (block.is_measured) return 0;
+    block.is_measured = true;
     const bool has_methods = block.pou->name.place.dialect().vendor == Vendor::codesys;
     std::uint64_t bits = 8 * (block.base ? bytes_of(*block.base->type) : has_methods ? 8U : 0U);
     for (const Variable& variable : block.variables)
         if (variable.type && variable.space == Space::frame)
             bits = end_behind(bits, *variable.type, type);
+    block.is_measured = false;
     return rounded_up(std::max<std::uint64_t>(whole_bytes(bits), 1), alignment_of(type));
 }
 

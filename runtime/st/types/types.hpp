@@ -252,6 +252,7 @@ struct Routine {
     bool is_looped = false;  ///< calls of it through references are found by the instance
     int ring = 0;  ///< of routines that call one another in a ring: the number of that; else 0
     int plain_ring = 0;             ///< and by calls that no instance finds
+    bool is_measured = false;       ///< its size is being reckoned
     bool is_met = false;            ///< in its ring is a call that an instance finds
     bool runs_rings = false;        ///< it is in a ring, or calls what may be
     std::vector<int> objects = {};  ///< globals that are blocks of the program, and that it names
