@@ -327,6 +327,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (const auto name = qualified_name(c, *e->operands[0]))
         e = make_call(c, *e, make_name(c, *e->operands[0], name->text), e->arguments);
     const Expression& callee = *e->operands[0];
+    if (callee.kind == E::member) name_block_of_list(c, *e->operands[0]);
     if (refuse_member_of_namespace(c, callee)) return nullptr;
     if (callee.kind == E::member) {
         const Type* of = check(c, e->operands[0]->operands[0]);

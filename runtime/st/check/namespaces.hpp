@@ -14,6 +14,9 @@ Token name_with_namespace(Checking& c, Token declared);
 /// a list of globals or is of a library. Nothing: the points take parts.
 std::optional<Token> qualified_name(Checking& c, const Expression& member);
 
+/// `list.p` of a PROPERTY that a list of globals has becomes that of the list's block of them.
+void name_block_of_list(Checking& c, Expression& member);
+
 /// Whether `e` means what is called so in full, `a.b.x`, though no source declares that.
 bool is_full_name(Checking& c, const Expression& e, std::string_view full);
 
