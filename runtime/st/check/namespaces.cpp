@@ -137,9 +137,12 @@ std::optional<Token> without_project(Checking& c, Token name) {
     if (point == name.text.npos || name.place.source->file->excerpts.empty()) return {};
     Token first = name;
     first.text = name.text.substr(0, point);
-    if (is_namespace(c, first.text) || c.look_up(&Names::types, first) || c.find_routine(first))
+    const std::string_view rest = name.text.substr(point + 1);
+    const bool is_given_on = is_namespace(c, rest.substr(0, rest.find('.')));
+    if ((is_namespace(c, first.text) && !is_given_on) || c.look_up(&Names::types, first) ||
+        c.find_routine(first))
         return {};
-    name.text.remove_prefix(point + 1);
+    name.text = rest;
     const bool is_known = c.look_up(&Names::types, name) || c.find_routine(name);
     return is_known ? std::optional(name) : std::nullopt;
 }

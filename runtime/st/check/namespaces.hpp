@@ -21,8 +21,9 @@ void name_block_of_list(Checking& c, Expression& member);
 bool is_full_name(Checking& c, const Expression& e, std::string_view full);
 
 /// `Otg` of `Planner.Otg` in a project of another tool, which has another project as a library: its
-/// name is nowhere in the sources. Nothing in other sources, where the first is declared, or where
-/// the second is no type, block or function.
+/// name is nowhere in the sources. So is `Other.x` of `Library.Other.x`, which CODESYS' libraries
+/// give on. Nothing in other sources, where the first is declared, or where the second is no type,
+/// block or function.
 std::optional<Token> without_project(Checking& c, Token name);
 
 /// Tells that a namespace is unknown, or has no such name, unless that was told.
