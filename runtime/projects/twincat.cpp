@@ -14,6 +14,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/lexer.hpp"
+#include "runtime/st/syntax/list_properties.hpp"
 
 namespace lineshaft::projects {
 
@@ -59,8 +60,16 @@ class ObjectText {
         add_end(fmt::format("END_{}", st::shown(kind)), unit);
     }
 
-    /// A type or a list of globals, which its declaration is all of.
-    void add_declaration(pugi::xml_node object) { add_lines(object.child("Declaration")); }
+    /// A type or a list of globals, which its declaration is all of but for a list's properties.
+    void add_declaration(pugi::xml_node object) {
+        add_lines(object.child("Declaration"));
+        if (!object.child("Property")) return;
+        const std::string block = fmt::format("{}_{}", st::list_properties, name(object));
+        add_end(fmt::format("VAR_GLOBAL\n{} : {};\nEND_VAR", st::list_properties, block), object);
+        add_end(fmt::format("FUNCTION_BLOCK {}", block), object);
+        for (const pugi::xml_node property : object.children("Property")) add_property(property);
+        add_end("END_FUNCTION_BLOCK", object);
+    }
 
     std::shared_ptr<const SourceFile> finish(std::string part) {
         std::vector<Diagnostic> mistakes = out_.list();

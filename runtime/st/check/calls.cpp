@@ -42,6 +42,28 @@ bool take_memory(Checking& c, Expression*& e, const Routine& called) {
     return true;
 }
 
+/// __VARINFO of CODESYS is given a variable's name as it is written, too, and its type's. False: it
+/// has none, which was told.
+bool take_names(Checking& c, Expression*& e, const Routine& called) {
+    const Token& name = called.pou->name;
+    const bool tells = is_library(name) && same_name(name.text, "__varinfo");
+    if (!tells || e->arguments.size() != 1) return true;
+    Expression* variable = make_copy(c, *e->arguments[0].value);
+    const Type* type = check(c, variable);
+    if (!type) return false;
+    const auto text = [&](std::string_view input, std::string_view value) {
+        constexpr std::size_t longest = 255;
+        const Variable* to = find_in(called.names, input);
+        return make_constant(c, *e, *to->type, {.text = std::string(value.substr(0, longest))});
+    };
+    const std::string_view of = type->name;
+    e = make_with(c, *e,
+                  {e->arguments[0],
+                   {.value = text("symbol", e->arguments[0].value->place.text())},
+                   {.value = text("typeName", of.substr(of.rfind('.') + 1))}});
+    return true;
+}
+
 /// A variable may bear a function's name, but no instance can be meant then.
 bool is_instance(Checking& c, const Token& name) {
     const Variable* variable = find_variable(c, name);
@@ -327,6 +349,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (const auto name = qualified_name(c, *e->operands[0]))
         e = make_call(c, *e, make_name(c, *e->operands[0], name->text), e->arguments);
     const Expression& callee = *e->operands[0];
+    if (callee.kind == E::member) name_block_of_list(c, *e->operands[0]);
     if (refuse_member_of_namespace(c, callee)) return nullptr;
     if (callee.kind == E::member) {
         const Type* of = check(c, e->operands[0]->operands[0]);
@@ -370,7 +393,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
         Routine* routine = c.find_routine(callee.token);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
-                !take_bytes(c, e, *routine) || !is_given_bytes(c, *e, *routine))
+                !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||
+                !is_given_bytes(c, *e, *routine))
                 return nullptr;
             const auto& overloads = c.names_beside(routine->pou->name).overloads;
             return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);

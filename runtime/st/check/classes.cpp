@@ -395,6 +395,7 @@ static void write_through(Checking& c, Statement*& s, const Type& type) {
 bool rewrite_property(Checking& c, Statement*& s) {
     Expression* target = s->target;
     if (target->kind == E::member) {
+        name_block_of_list(c, *target);
         if (qualified_name(c, *target) || enumeration_of(c, *target)) return false;
         if (target->operands[0]->kind == E::member && qualified_name(c, *target->operands[0]))
             return false;

@@ -4,6 +4,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
@@ -193,6 +194,28 @@ Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::
                              std::move(body), {})});
 }
 
+/// A block that has no FB_init, but for the one of all blocks. What keeps values over a restart,
+/// is its own block or may be of another that extends it has none.
+bool may_begin_anew(const Checking& c, const Expression& call, const Type* type) {
+    if (!type || type->kind != Kind::block || is_through_reference(call)) return false;
+    const Routine& block = *type->routine;
+    const auto is_kept = [](const Variable& variable) { return variable.retain; };
+    return !block.methods.contains("fb_init") && &block != c.routine &&
+           &block != c.routine->owner && std::ranges::none_of(block.variables, is_kept);
+}
+
+/// Whether values that are kept and an online change are meant counts for nothing then.
+bool are_arguments_of_init(Checking& c, Expression& call) {
+    if (call.arguments.size() != 2)
+        return c.fail(code::wrong_arguments, call.place, "FB_init takes 2 arguments",
+                      "bInitRetains and bInCopyCode");
+    for (Argument& argument : call.arguments) {
+        if (!check(c, argument.value, &bool_type) || !coerce(c, argument.value, bool_type))
+            return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 bool is_of_dynamic_memory(std::string_view function) {
@@ -268,6 +291,25 @@ bool rewrite_delete(Checking& c, Statement*& s) {
     made->value = &call;
     c.deletions.push_back({c.routine, made, pointer});
     s = made;
+    return true;
+}
+
+bool rewrite_init(Checking& c, Statement*& s) {
+    Expression& call = *s->value;
+    const Expression& callee = *call.operands[0];
+    const bool is_init = s->kind == S::call && s->place.dialect().is_loose && c.routine &&
+                         callee.kind == E::member && same_name(callee.token.text, "fb_init");
+    if (!is_init || refuse_member_of_namespace(c, callee)) return false;
+    const Type* type = check(c, call.operands[0]->operands[0]);
+    if (!may_begin_anew(c, call, type)) return false;
+    if (!are_arguments_of_init(c, call)) return true;
+    const Expression& like = *callee.operands[0];
+    const auto instance = [&] { return make_copy(c, like); };
+    Variable& untouched = c.make_variable(*c.routine, callee.token, "FB_init.untouched", type);
+    Block all{make_assignment(c, s->place, instance(), make_use(c, like, untouched))};
+    if (is_constructed(c, type)) construct_one(c, like, *c.routine, *type, nullptr, instance, all);
+    s = make_sequence(c, s->place, std::move(all));
+    check(c, s);
     return true;
 }
 

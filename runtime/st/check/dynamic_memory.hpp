@@ -11,6 +11,8 @@ bool is_of_dynamic_memory(std::string_view function);
 bool rewrite_new(Checking& c, Statement*& s);
 /// `__DELETE(p);`
 bool rewrite_delete(Checking& c, Statement*& s);
+/// `b.FB_init(TRUE, FALSE);` of a block that declares none: it begins anew, as its type says.
+bool rewrite_init(Checking& c, Statement*& s);
 /// When all that is made is known.
 void write_deletions(Checking& c);
 

@@ -9,6 +9,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -80,16 +81,32 @@ std::optional<Token> name_in_own_list(Checking& c, const Token& token) {
     return full;
 }
 
+/// Nothing runs, or the PROPERTY of a list of globals does.
+bool is_within_list(const Checking& c) {
+    const Routine* r = c.routine;
+    return !r || (r->owner && r->owner->name.starts_with(list_properties));
+}
+
+Variable* find_global(Checking& c, const Token& token) {
+    if (Variable* global = c.find_inside_out(c.globals, token)) return global;
+    auto* constant = c.find_inside_out(c.constants, token);
+    return constant ? declare_early(c, *constant) : nullptr;
+}
+
+/// `g` of `.g`, which is the global variable though a variable of the unit has that name.
+Token named_behind_point(Token token) {
+    token.text = without_point(token.text);
+    return token;
+}
+
 Variable* find_in_any_capitals(Checking& c, const Token& token) {
+    if (token.text.starts_with('.')) return find_global(c, named_behind_point(token));
     if (Variable* own = find_own(c, token)) return own;
     if (token.local) return nullptr;
-    if (const auto full = c.routine ? std::nullopt : name_in_own_list(c, token))
+    if (const auto full = is_within_list(c) ? name_in_own_list(c, token) : std::nullopt)
         if (Variable* own = find_in_any_capitals(c, *full)) return own;
-    if (!is_prelude(token)) {
-        if (Variable* global = c.find_inside_out(c.globals, token)) return global;
-        if (auto* constant = c.find_inside_out(c.constants, token))
-            if (Variable* variable = declare_early(c, *constant)) return variable;
-    }
+    if (!is_prelude(token))
+        if (Variable* global = find_global(c, token)) return global;
     return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
 }
 
@@ -226,7 +243,7 @@ namespace {
 
 /// A global variable that is named without its list, of which there are several.
 bool is_ambiguous(Checking& c, const Token& token, const Variable& variable) {
-    const auto lists = c.in_several_lists.find(token.text);
+    const auto lists = c.in_several_lists.find(without_point(token.text));
     if (lists == c.in_several_lists.end() || variable.section != Section::global) return false;
     const auto& [first, second] = lists->second;
     const Mark one = first.place.mark(), other = second.place.mark();

@@ -4,7 +4,9 @@
 
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -47,7 +49,8 @@ void refuse_namespace(Checking& c, Place place, std::string_view path) {
 
 /// `a.b.x`; empty: there is more to it than names.
 std::string joined(const Expression& e) {
-    if (e.kind == E::name) return e.token.local ? std::string() : std::string(e.token.text);
+    if (e.kind == E::name)
+        return e.token.local ? std::string() : std::string(without_point(e.token.text));
     if (e.kind != E::member) return {};
     const std::string before = joined(*e.operands[0]);
     return before.empty() ? before : fmt::format("{}.{}", before, e.token.text);
@@ -134,9 +137,12 @@ std::optional<Token> without_project(Checking& c, Token name) {
     if (point == name.text.npos || name.place.source->file->excerpts.empty()) return {};
     Token first = name;
     first.text = name.text.substr(0, point);
-    if (is_namespace(c, first.text) || c.look_up(&Names::types, first) || c.find_routine(first))
+    const std::string_view rest = name.text.substr(point + 1);
+    const bool is_given_on = is_namespace(c, rest.substr(0, rest.find('.')));
+    if ((is_namespace(c, first.text) && !is_given_on) || c.look_up(&Names::types, first) ||
+        c.find_routine(first))
         return {};
-    name.text.remove_prefix(point + 1);
+    name.text = rest;
     const bool is_known = c.look_up(&Names::types, name) || c.find_routine(name);
     return is_known ? std::optional(name) : std::nullopt;
 }
@@ -162,6 +168,17 @@ std::optional<Token> qualified_name(Checking& c, const Expression& member) {
     }
     name.text = c.checked.names.emplace_back(name.text);
     return name;
+}
+
+void name_block_of_list(Checking& c, Expression& member) {
+    const Expression& list = *member.operands[0];
+    if (list.type || find_variable(c, list.token) || !root_of(c, member)) return;
+    const std::string full = fmt::format("{}.{}", joined(list), list_properties);
+    const Variable* block = find_in(c.globals, full);
+    const Routine* of = block && block->type ? block->type->routine : nullptr;
+    const std::string_view name = member.token.text;
+    if (of && (of->getters.contains(name) || of->setters.contains(name)))
+        member.operands[0] = make_name(c, list, c.checked.names.emplace_back(full));
 }
 
 bool is_full_name(Checking& c, const Expression& e, std::string_view full) {

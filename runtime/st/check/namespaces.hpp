@@ -14,12 +14,16 @@ Token name_with_namespace(Checking& c, Token declared);
 /// a list of globals or is of a library. Nothing: the points take parts.
 std::optional<Token> qualified_name(Checking& c, const Expression& member);
 
+/// `list.p` of a PROPERTY that a list of globals has becomes that of the list's block of them.
+void name_block_of_list(Checking& c, Expression& member);
+
 /// Whether `e` means what is called so in full, `a.b.x`, though no source declares that.
 bool is_full_name(Checking& c, const Expression& e, std::string_view full);
 
 /// `Otg` of `Planner.Otg` in a project of another tool, which has another project as a library: its
-/// name is nowhere in the sources. Nothing in other sources, where the first is declared, or where
-/// the second is no type, block or function.
+/// name is nowhere in the sources. So is `Other.x` of `Library.Other.x`, which CODESYS' libraries
+/// give on. Nothing in other sources, where the first is declared, or where the second is no type,
+/// block or function.
 std::optional<Token> without_project(Checking& c, Token name);
 
 /// Tells that a namespace is unknown, or has no such name, unless that was told.

@@ -10,6 +10,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -90,7 +91,7 @@ bool refuse_of_list(Checking& c, const Expression& e) {
     for (const DeclarationBlock& block : c.tree.globals)
         if (!block.list.empty() && same_name(block.list, list.token.text))
             for (const Declaration* declared : block.declarations)
-                names.emplace_back(declared->name.text);
+                if (declared->name.text != list_properties) names.emplace_back(declared->name.text);
     if (names.empty() || c.find_routine(list.token) || c.look_up(&Names::types, list.token))
         return false;
     c.fail(code::not_declared, e.token.place,
@@ -102,6 +103,7 @@ bool refuse_of_list(Checking& c, const Expression& e) {
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
+    name_block_of_list(c, *e);
     if (const auto name = qualified_name(c, *e)) {
         e = make_name(c, *e, name->text);
         return check(c, e);

@@ -130,7 +130,7 @@ void check_special(Checking& c, Statement*& s) {
 
 bool rewrite(Checking& c, Statement*& s) {
     if ((s->kind != S::assign && s->kind != S::call) || s->value->kind != E::call) return false;
-    if (rewrite_new(c, s) || rewrite_delete(c, s)) return true;
+    if (rewrite_new(c, s) || rewrite_delete(c, s) || rewrite_init(c, s)) return true;
     Expression& call = *s->value;
     const Expression& callee = *call.operands[0];
     const Routine* routine = nullptr;

@@ -18,6 +18,8 @@ void parse_using(Parsing& p);
 void open_scope(Parsing& p, std::uint32_t begin, std::string_view path);
 /// `a.b.c` as one name.
 Token parse_qualified_name(Parsing& p, std::string_view what);
+/// `.g` of CODESYS.
+bool at_name_behind_point(const Parsing& p);
 
 // parse_program_units.cpp
 void parse_declaration(Parsing& p);

@@ -49,7 +49,15 @@ bool at_operator_call(const Cursor& p) {
 /// Variable_Name : ( 'THIS' | 'SUPER' ) '^' ? | Name
 ///               | 'AND' | 'OR' | 'XOR' | 'MOD'
 /// AND and its like are names before a '('. THIS and SUPER are an instance with and without '^'.
+/// CODESYS writes a '.' before the Name of a global variable, which is a part of it then.
 Expression* parse_name(Parsing& p) {
+    if (at_name_behind_point(p)) {
+        const Place point = p.take().place;
+        Expression* name = p.make(Expression::Kind::name, p.take());
+        name->token.text = p.tree.names.emplace_back(fmt::format(".{}", name->token.text));
+        name->place = point.to(name->place);
+        return name;
+    }
     const bool is_own = p.is(Word::super_) || (p.is(Word::name) && p.says("this"));
     Expression* name = p.make(Expression::Kind::name, p.take());
     if (is_own && p.is(Word::caret)) name->place = name->place.to(p.take().place);
@@ -124,7 +132,8 @@ Expression* parse_primary(Parsing& p) {
             default:
                 if (p.at_qualified_prefix()) return parse_typed_literal(p);
                 if (p.is(Word::direct)) return p.make(Expression::Kind::name, p.take());
-                if (p.is_name() || at_operator_call(p)) return parse_name(p);
+                if (p.is_name() || at_operator_call(p) || at_name_behind_point(p))
+                    return parse_name(p);
         }
     }
     expected(p, "a value");
@@ -227,6 +236,10 @@ bool comes_too_late(const Parsing& p, std::size_t target) {
 }
 
 }  // namespace
+
+bool at_name_behind_point(const Parsing& p) {
+    return p.is(Word::dot) && p.is_name(1) && p.source->dialect.is_loose;
+}
 
 /// Expression : Xor_Expr ( ( 'OR' | 'OR_ELSE' ) Xor_Expr ) *
 Expression* parse_expression(Parsing& p) {

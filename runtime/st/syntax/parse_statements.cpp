@@ -97,7 +97,8 @@ void join_assignment(Parsing& p) {
 /// It begins with a Name; an Invocation ends with the ')' of a call, or names an action.
 void parse_simple(Parsing& p, Block& to) {
     if (refuse_other_language(p)) return;
-    if (!p.is_name() && !p.is(Word::direct)) return expected(p, "a statement");
+    if (!p.is_name() && !p.is(Word::direct) && !at_name_behind_point(p))
+        return expected(p, "a statement");
     if (p.is_in_test && p.at_test_statement()) return parse_test_statement(p, to);
     Expression* target = parse_access(p);
     if (p.panic) return;

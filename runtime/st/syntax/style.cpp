@@ -114,12 +114,18 @@ class Style {
     bool is_header_ = false;  ///< which the line ends
 };
 
+/// `.g`, a global variable: no part of what stands before.
+bool begins_with_point(const Piece& before, const Piece& here) {
+    return here.is(Word::dot) && !is_value(before) && !before.is(Word::super_);
+}
+
 /// An operator's sign or a statement's colon has blanks around it, a call's bracket none before.
 bool Style::is_spaced(std::size_t i) const {
     const Piece &before = pieces_[i - 1], &here = pieces_[i];
     if (!before.token || !here.token) return true;
     if (is_one_of(here, {Word::comma, Word::semicolon, Word::close, Word::close_bracket, Word::dot,
-                         Word::range, Word::caret}))
+                         Word::range, Word::caret}) &&
+        !begins_with_point(before, here))
         return false;
     if (is_one_of(before, {Word::open, Word::open_bracket, Word::dot, Word::range, Word::prefix}))
         return false;
