@@ -74,6 +74,9 @@ std::span<const Field> Axis::fields() {
         parameter("lowest_position", &A::lowest_position, "{unit}", "with `software_limits`"),
         parameter("highest_position", &A::highest_position, "{unit}", "with `software_limits`"),
         parameter("start_position", &A::start_position, "{unit}", "position at the first scan"),
+        parameter("needs_power", &A::needs_power, "",
+                  "disabled until MC_Power gives it power; else an axis has power that no MC_Power "
+                  "has switched off"),
         parameter(
             "transition_quantum", &A::transition_quantum, "s",
             "a slave gets into gear in whole steps of this, from the start of its job, each at "
@@ -150,6 +153,12 @@ void Axis::start(const Scan& now) {
     hold({.position = start_position}, {now.time});
     base.position = start_position;
     position = modulo ? within_period(start_position, period) : start_position;
+    if (needs_power) wait_for_power();
+}
+
+void Axis::wait_for_power() {
+    powered = 0;
+    state = AxisState::disabled;
 }
 
 void Axis::wake_up(std::int64_t now) {
@@ -171,6 +180,7 @@ void Axis::wake_up(std::int64_t now) {
     error_id = MotionError::none;
     state = AxisState::standstill;
     velocity = acceleration = jerk = actual_velocity = 0;
+    if (needs_power) wait_for_power();
 }
 
 void Axis::shift(std::int64_t by) {

@@ -114,6 +114,7 @@ struct Axis {
            default_jerk = 5e4;
     double start_position = 0;
     double transition_quantum = 0;
+    bool needs_power = false;
 
     double actual_position = 0;
 
@@ -224,6 +225,7 @@ struct Axis {
 
     // axis.cpp: time passes.
     void start(const Scan& now);
+    void wait_for_power();
     void advance(const Context& context, std::int64_t now);
     bool goes_on(std::int64_t now);
     bool has_ended(std::int64_t now) const;

@@ -130,6 +130,11 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
     return blocks;
 }
 
+/// As on a controller: without power until the sources give it.
+NewBlock axis(const std::string& name, const std::string& task) {
+    return {name, "axis", task, {{"needs_power", "true"}}};
+}
+
 /// Blocks such as axes that the sources name, in the task of the first that does.
 std::vector<NewBlock> named_blocks(const st::Library& library,
                                    const std::vector<NewBlock>& programs) {
@@ -141,9 +146,10 @@ std::vector<NewBlock> named_blocks(const st::Library& library,
             const bool is_there = field.global.empty() ||
                                   std::ranges::any_of(library.kinds(), is_own) ||
                                   std::ranges::any_of(blocks, is_own);
-            if (!is_there)
-                blocks.push_back(
-                    {std::string(field.global), std::string(field.refers), program.task});
+            if (is_there) continue;
+            const std::string name(field.global), type(field.refers);
+            blocks.push_back(type == "axis" ? axis(name, program.task)
+                                            : NewBlock{name, type, program.task});
         }
     }
     return blocks;
@@ -161,7 +167,7 @@ std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>&
             std::string name = plain_name(fmt::format("{}_{}", owner.name, field.name));
             if (name.ends_with('_')) name.pop_back();
             owner.given.emplace_back(field.name, name);
-            axes.push_back({name, "axis", owner.task});
+            axes.push_back(axis(name, owner.task));
         }
     }
     return axes;
