@@ -524,6 +524,45 @@ def test_structured_text_tests():
     client.end()
 
 
+def test_calls_that_meet_themselves():
+    """An outer call shows its own variables, which a later call on its instance has put aside; and so does a function's."""
+    tests = folder / "meets_test.st"
+    tests.write_text("FUNCTION Sum : INT\nVAR_INPUT n : INT; END_VAR\nVAR twice : INT; END_VAR\ntwice := 2 * n;\n"
+                     "IF n > 0 THEN\nSum := n + Sum(n - 1);\nELSE\nSum := 0;\nEND_IF\nEND_FUNCTION\n"
+                     "INTERFACE IStep\nMETHOD Down : INT\nVAR_INPUT n : INT; END_VAR\nEND_METHOD\nEND_INTERFACE\n"
+                     "FUNCTION_BLOCK Walker IMPLEMENTS IStep\nVAR next : IStep; calls : INT; END_VAR\n"
+                     "METHOD Down : INT\nVAR_INPUT n : INT; END_VAR\nVAR list : ARRAY[0..2] OF INT; name : STRING(9); END_VAR\n"
+                     "calls := calls + 1;\nnext := THIS^;\nlist[1] := n * 10;\nname := INT_TO_STRING(n);\n"
+                     "IF n > 2 THEN\nDown := next.Down(n - 1);\nELSIF n > 0 THEN\nDown := Other(n - 1, list[1]);\nELSE\nDown := Sum(1);\nEND_IF\n"
+                     "END_METHOD\n"
+                     "METHOD Other : INT\nVAR_INPUT n : INT; END_VAR\nVAR_IN_OUT from : INT; END_VAR\nVAR own : INT; END_VAR\n"
+                     "own := n + 50;\nOther := THIS^.Down(n) + from;\nown := own + from;\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+                     "TEST 'goes down'\nVAR walker : Walker; END_VAR\nASSERT_EQ(walker.Down(3), 31);\nEND_TEST\n", encoding="utf-8")
+    client = Client(lineshaft)
+    client.launch(tests, {tests: [{"line": 8}]}, test="goes down")
+    client.event("stopped")
+    frames = client.stack()
+    assert [f["name"] for f in frames[:8]] == ["Sum", "Sum", *("Walker." + m for m in ("Down", "Other", "Down", "Other", "Down", "Down"))], frames
+
+    def value(frame, text):
+        return client.request("evaluate", expression=text, frameId=frames[frame]["id"])["result"]
+
+    assert [client.value("Inputs", "n", frame=i) for i in range(8)] == ["0", "1", "0", "0", "1", "1", "2", "3"]
+    assert [value(i, "twice + n") for i in (0, 1)] == ["0", "3"]
+    assert [value(i, "own * 2") for i in (3, 5)] == ["100", "102"]
+    assert [value(i, "from") for i in (3, 5)] == ["10", "20"]
+    assert [value(i, "list[1]") for i in (2, 4, 6, 7)] == ["0", "10", "20", "30"]
+    assert [value(i, "name") for i in (2, 4, 6, 7)] == ["'0'", "'1'", "'2'", "'3'"]
+    assert {value(i, "calls") for i in range(2, 8)} == {"4"}
+    client.step("stepOut")
+    frames = client.stack()
+    assert frames[0]["name"] == "Walker.Other" and [value(i, "n") for i in range(5)] == ["0", "1", "1", "2", "3"], frames
+    client.breakpoints(tests)
+    client.request("continue", threadId=1)
+    assert client.event("exited") == {"exitCode": 0}
+    client.end()
+
+
 def test_protocols_own_client():
     if not (source / "tools/report/node_modules/@vscode/debugadapter-testsupport").exists():
         print("SKIPPED: @vscode/debugadapter-testsupport; tools/setup --tests installs it")

@@ -192,7 +192,8 @@ Seat target_of(const Seat& reference) {
         if (!st::same_type(*code.shapes[shape].type, *to)) continue;
         if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, bit, shape))
             return {to,
-                    st::place_of(address + *slot, reference.frame->root, *reference.frame->context),
+                    reference.frame->seen(st::place_of(address + *slot, reference.frame->root,
+                                                       *reference.frame->context)),
                     reference.frame};
     }
     return {};
@@ -218,11 +219,12 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
     const std::size_t offset = 8 * std::size_t{variable.slot};
     switch (variable.space) {
         case st::Space::frame:
-            return {variable.type, base + offset, &frame};
+            return {variable.type, frame.seen(base + offset), &frame};
         case st::Space::reference: {
-            const auto address = read<std::uint64_t>(base + offset);
+            const auto address = read<std::uint64_t>(frame.seen(base + offset));
             if (address == 0) return {};
-            return {variable.type, st::place_of(address, frame.root, *frame.context), &frame};
+            return {variable.type, frame.seen(st::place_of(address, frame.root, *frame.context)),
+                    &frame};
         }
         case st::Space::global:
             return {variable.type, global_at(variable.global, frame) + offset, &frame};
