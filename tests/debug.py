@@ -284,6 +284,12 @@ def test_axis_of_a_call():
             raise AssertionError((watched, value(watched)))
         except Refused as why:
             assert wanted in str(why), (watched, why)
+    shown = client.inside(client.scopes(frame)["In and out"])["axis"]
+    of_block = client.inside(client.inside(client.scopes(frame)["Locals"])["move"]["variablesReference"])["Axis"]
+    assert (shown["value"], of_block["value"], of_block["type"]) == ("x", "x", "axis"), (shown, of_block)
+    assert client.inside(of_block["variablesReference"]).keys() == client.inside(shown["variablesReference"]).keys()
+    assert float(client.inside(of_block["variablesReference"])["position"]["value"]) == float(value("axis.position"))
+    assert value(of_block["evaluateName"]) == "x"
     client.end()
 
 

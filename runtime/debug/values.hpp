@@ -40,7 +40,7 @@ struct Referred {
     const BlockPlace* block = nullptr;
     const std::byte* at = nullptr;
 };
-Referred block_of(const Seat& handle);
+Referred block_of(const std::byte* handle, const Frame& frame);
 
 /// What is in it, as a watch reaches it: a group has no name in the language.
 std::vector<Shown> parts_of(const Shown& whole, std::size_t first, std::size_t count);
