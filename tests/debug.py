@@ -179,6 +179,18 @@ def test_conditions():
     client.end()
 
 
+def test_counts_of_what_is_passed_over():
+    """Who goes to a place far away has come to the breakpoints on the way."""
+    client = Client(lineshaft)
+    client.launch(program, {motor: [{"line": line("count := count + 1;"), "hitCondition": "30"}]}, stopOnEntry=True)
+    client.event("stopped")
+    client.step("lineshaft/goTo", 2, time=200_000_000, scan=1, statement=1)
+    assert client.value("Outputs", "count", 2) == "20"
+    client.step("continue", 2)
+    assert client.value("Outputs", "count", 2) == "29"
+    client.end()
+
+
 def test_log_points():
     client = Client(lineshaft)
     client.launch(program, {motor: [{"line": line("count := count + 1;"), "logMessage": "now {speed} {count * 2} {no}"}]})
@@ -566,6 +578,57 @@ def test_calls_that_meet_themselves():
     client.breakpoints(tests)
     client.request("continue", threadId=1)
     assert client.event("exited") == {"exitCode": 0}
+    client.end()
+
+
+def test_data_breakpoints():
+    """Behind the statement that changes a variable, forwards and back; behind the instant for what no statement changes."""
+    client = Client(lineshaft)
+    client.launch(program, {motor: [line("Clamp := x;")]}, stopOnEntry=True)
+    assert client.capabilities["supportsDataBreakpoints"] is True
+    client.event("stopped")
+    locals_of = client.scopes(client.stack(2)[0]["id"])["Locals"]
+    ramp = client.inside(client.inside(locals_of)["ramp"]["variablesReference"])["Locals"]["variablesReference"]
+    infos = {"mode": client.request("dataBreakpointInfo", variablesReference=locals_of, name="mode"),
+             "steps": client.request("dataBreakpointInfo", variablesReference=ramp, name="steps"),
+             "count": client.request("dataBreakpointInfo", name="count", frameId=client.stack(2)[0]["id"]),
+             **{name: client.request("dataBreakpointInfo", name=name) for name in ("delay.q", "inputs.start")}}
+    assert all(info["dataId"] and info["accessTypes"] == ["write"] for info in infos.values()), infos
+    assert infos["steps"]["description"] == "motor.ramp.steps", infos
+    client.step("continue", 2)
+    refused = client.request("dataBreakpointInfo", name="most", frameId=client.stack(2)[0]["id"])
+    assert refused["dataId"] is None and "'most'" in refused["description"], refused
+    client.breakpoints(motor)
+    client.step("lineshaft/goTo", 2, time=0, scan=1, statement=1)
+
+    def watch(*names, **more):
+        wanted = [{"dataId": infos.get(name, {}).get("dataId", name), **more} for name in names]
+        return client.request("setDataBreakpoints", breakpoints=wanted)["breakpoints"]
+
+    assert not any(b["verified"] for b in watch("nothing") + watch("mode", accessType="read") + watch("mode", hitCondition="3"))
+    placed = watch("mode", "delay.q", "inputs.start")
+    assert all(b["verified"] for b in placed), placed
+    number = {b["id"]: name for b, name in zip(placed, ("mode", "delay.q", "inputs.start"))}
+    way = []
+    for _ in range(3):
+        stop = client.step("continue", 2)
+        assert stop["reason"] == "data breakpoint", stop
+        way.append(([number[i] for i in stop["hitBreakpointIds"]], *client.line(stop["threadId"]), client.request("lineshaft/state")))
+    names = [(changed, name) if name.startswith("task") else (changed, name, at) for changed, name, at, _ in way]
+    assert names == [(["inputs.start"], "task fast at 0.025 s"), (["mode"], "Motor (motor)", line("IF b < 5 THEN")),
+                     (["delay.q"], "task fast at 0.052 s")], names
+    for changed, *_, state in reversed(way[:2]):
+        stop = client.step("reverseContinue", 2)
+        found = client.request("lineshaft/state")
+        assert ([number[i] for i in stop["hitBreakpointIds"]], stop["reason"]) == (changed, "data breakpoint"), stop
+        assert all(found[key] == state[key] for key in ("time", "scan", "statement")), (found, state)
+    assert client.step("reverseContinue", 2)["reason"] == "entry"
+    watch("steps", "count")
+    found = []
+    for _ in range(4):
+        found.append((client.step("continue", 2)["reason"], *client.line(2)))
+    ramp = ("data breakpoint", "Ramp", line("steps := steps + 1;") + 1)
+    assert found == [ramp, ("data breakpoint", "task main at 0 s", 1), ramp, ("data breakpoint", "task main at 0.01 s", 1)], found
     client.end()
 
 

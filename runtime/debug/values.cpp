@@ -341,16 +341,24 @@ Shown show_blocks(const Linked& linked, int task) {
     return group("Blocks", std::move(blocks));
 }
 
+Shown show_signal(const Machine& machine, const Signal& signal) {
+    const std::byte* at = signal.slot;
+    if (signal.port.instance >= 0) {
+        const BlockPlace& block = machine.blocks[static_cast<std::size_t>(signal.port.instance)];
+        at = block.live + block.type->fields[static_cast<std::size_t>(signal.port.field)].offset;
+    }
+    return {.name = signal.name,
+            .value = signal.describe(signal.value()),
+            .type = std::string(name_of(signal.type)),
+            .signal = signal.name,
+            .at = at,
+            .bytes = size_of(signal.type)};
+}
+
 Shown show_inputs(const Linked& linked) {
     List inputs;
     for (const Signal& signal : linked.machine.signals)
-        if (signal.port.instance < 0)
-            inputs.push_back({.name = signal.name,
-                              .value = signal.describe(signal.value()),
-                              .type = std::string(name_of(signal.type)),
-                              .signal = signal.name,
-                              .at = signal.slot,
-                              .bytes = size_of(signal.type)});
+        if (signal.port.instance < 0) inputs.push_back(show_signal(linked.machine, signal));
     return group("Inputs of the program", std::move(inputs));
 }
 
