@@ -533,6 +533,16 @@ def test_structured_text_tests():
     assert client.event("exited") == {"exitCode": 1}
     told = "".join(e["body"]["output"] for e in client.events if e["event"] == "output")
     assert client.end() == 1
+    client = Client(lineshaft)  # in a folder, beside what is no test and what has mistakes
+    whole = folder / "whole/test"
+    whole.mkdir(parents=True)
+    (whole / "mark_test.st").write_text(tests.read_text())
+    (whole / "bad_test.st").write_text("TEST 'adds'\nnothing := 1;\nEND_TEST\n")
+    (whole.parent / "plain.yaml").write_text("lineshaft: 1\n")
+    client.launch(whole.parent, {whole / "mark_test.st": [11]}, test="adds")
+    client.event("stopped")
+    assert client.line() == ("TEST 'adds' (TEST)", 11), client.line()
+    client.end()
     client = Client(lineshaft, tests, "--test", "nothing")
     client.request("initialize")
     try:
