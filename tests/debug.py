@@ -179,6 +179,18 @@ def test_conditions():
     client.end()
 
 
+def test_counts_of_what_is_passed_over():
+    """Who goes to a place far away has come to the breakpoints on the way."""
+    client = Client(lineshaft)
+    client.launch(program, {motor: [{"line": line("count := count + 1;"), "hitCondition": "30"}]}, stopOnEntry=True)
+    client.event("stopped")
+    client.step("lineshaft/goTo", 2, time=200_000_000, scan=1, statement=1)
+    assert client.value("Outputs", "count", 2) == "20"
+    client.step("continue", 2)
+    assert client.value("Outputs", "count", 2) == "29"
+    client.end()
+
+
 def test_log_points():
     client = Client(lineshaft)
     client.launch(program, {motor: [{"line": line("count := count + 1;"), "logMessage": "now {speed} {count * 2} {no}"}]})
@@ -284,6 +296,12 @@ def test_axis_of_a_call():
             raise AssertionError((watched, value(watched)))
         except Refused as why:
             assert wanted in str(why), (watched, why)
+    shown = client.inside(client.scopes(frame)["In and out"])["axis"]
+    of_block = client.inside(client.inside(client.scopes(frame)["Locals"])["move"]["variablesReference"])["Axis"]
+    assert (shown["value"], of_block["value"], of_block["type"]) == ("x", "x", "axis"), (shown, of_block)
+    assert client.inside(of_block["variablesReference"]).keys() == client.inside(shown["variablesReference"]).keys()
+    assert float(client.inside(of_block["variablesReference"])["position"]["value"]) == float(value("axis.position"))
+    assert value(of_block["evaluateName"]) == "x"
     client.end()
 
 
@@ -515,12 +533,112 @@ def test_structured_text_tests():
     assert client.event("exited") == {"exitCode": 1}
     told = "".join(e["body"]["output"] for e in client.events if e["event"] == "output")
     assert client.end() == 1
+    client = Client(lineshaft)  # in a folder, beside what is no test and what has mistakes
+    whole = folder / "whole/test"
+    whole.mkdir(parents=True)
+    (whole / "mark_test.st").write_text(tests.read_text())
+    (whole / "bad_test.st").write_text("TEST 'adds'\nnothing := 1;\nEND_TEST\n")
+    (whole.parent / "plain.yaml").write_text("lineshaft: 1\n")
+    client.launch(whole.parent, {whole / "mark_test.st": [11]}, test="adds")
+    client.event("stopped")
+    assert client.line() == ("TEST 'adds' (TEST)", 11), client.line()
+    client.end()
     client = Client(lineshaft, tests, "--test", "nothing")
     client.request("initialize")
     try:
         raise AssertionError(client.request("launch"))
     except Refused as why:
         assert "adds, adds wrong" in str(why), why
+    client.end()
+
+
+def test_calls_that_meet_themselves():
+    """An outer call shows its own variables, which a later call on its instance has put aside; and so does a function's."""
+    tests = folder / "meets_test.st"
+    tests.write_text("FUNCTION Sum : INT\nVAR_INPUT n : INT; END_VAR\nVAR twice : INT; END_VAR\ntwice := 2 * n;\n"
+                     "IF n > 0 THEN\nSum := n + Sum(n - 1);\nELSE\nSum := 0;\nEND_IF\nEND_FUNCTION\n"
+                     "INTERFACE IStep\nMETHOD Down : INT\nVAR_INPUT n : INT; END_VAR\nEND_METHOD\nEND_INTERFACE\n"
+                     "FUNCTION_BLOCK Walker IMPLEMENTS IStep\nVAR next : IStep; calls : INT; END_VAR\n"
+                     "METHOD Down : INT\nVAR_INPUT n : INT; END_VAR\nVAR list : ARRAY[0..2] OF INT; name : STRING(9); END_VAR\n"
+                     "calls := calls + 1;\nnext := THIS^;\nlist[1] := n * 10;\nname := INT_TO_STRING(n);\n"
+                     "IF n > 2 THEN\nDown := next.Down(n - 1);\nELSIF n > 0 THEN\nDown := Other(n - 1, list[1]);\nELSE\nDown := Sum(1);\nEND_IF\n"
+                     "END_METHOD\n"
+                     "METHOD Other : INT\nVAR_INPUT n : INT; END_VAR\nVAR_IN_OUT from : INT; END_VAR\nVAR own : INT; END_VAR\n"
+                     "own := n + 50;\nOther := THIS^.Down(n) + from;\nown := own + from;\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+                     "TEST 'goes down'\nVAR walker : Walker; END_VAR\nASSERT_EQ(walker.Down(3), 31);\nEND_TEST\n", encoding="utf-8")
+    client = Client(lineshaft)
+    client.launch(tests, {tests: [{"line": 8}]}, test="goes down")
+    client.event("stopped")
+    frames = client.stack()
+    assert [f["name"] for f in frames[:8]] == ["Sum", "Sum", *("Walker." + m for m in ("Down", "Other", "Down", "Other", "Down", "Down"))], frames
+
+    def value(frame, text):
+        return client.request("evaluate", expression=text, frameId=frames[frame]["id"])["result"]
+
+    assert [client.value("Inputs", "n", frame=i) for i in range(8)] == ["0", "1", "0", "0", "1", "1", "2", "3"]
+    assert [value(i, "twice + n") for i in (0, 1)] == ["0", "3"]
+    assert [value(i, "own * 2") for i in (3, 5)] == ["100", "102"]
+    assert [value(i, "from") for i in (3, 5)] == ["10", "20"]
+    assert [value(i, "list[1]") for i in (2, 4, 6, 7)] == ["0", "10", "20", "30"]
+    assert [value(i, "name") for i in (2, 4, 6, 7)] == ["'0'", "'1'", "'2'", "'3'"]
+    assert {value(i, "calls") for i in range(2, 8)} == {"4"}
+    client.step("stepOut")
+    frames = client.stack()
+    assert frames[0]["name"] == "Walker.Other" and [value(i, "n") for i in range(5)] == ["0", "1", "1", "2", "3"], frames
+    client.breakpoints(tests)
+    client.request("continue", threadId=1)
+    assert client.event("exited") == {"exitCode": 0}
+    client.end()
+
+
+def test_data_breakpoints():
+    """Behind the statement that changes a variable, forwards and back; behind the instant for what no statement changes."""
+    client = Client(lineshaft)
+    client.launch(program, {motor: [line("Clamp := x;")]}, stopOnEntry=True)
+    assert client.capabilities["supportsDataBreakpoints"] is True
+    client.event("stopped")
+    locals_of = client.scopes(client.stack(2)[0]["id"])["Locals"]
+    ramp = client.inside(client.inside(locals_of)["ramp"]["variablesReference"])["Locals"]["variablesReference"]
+    infos = {"mode": client.request("dataBreakpointInfo", variablesReference=locals_of, name="mode"),
+             "steps": client.request("dataBreakpointInfo", variablesReference=ramp, name="steps"),
+             "count": client.request("dataBreakpointInfo", name="count", frameId=client.stack(2)[0]["id"]),
+             **{name: client.request("dataBreakpointInfo", name=name) for name in ("delay.q", "inputs.start")}}
+    assert all(info["dataId"] and info["accessTypes"] == ["write"] for info in infos.values()), infos
+    assert infos["steps"]["description"] == "motor.ramp.steps", infos
+    client.step("continue", 2)
+    refused = client.request("dataBreakpointInfo", name="most", frameId=client.stack(2)[0]["id"])
+    assert refused["dataId"] is None and "'most'" in refused["description"], refused
+    client.breakpoints(motor)
+    client.step("lineshaft/goTo", 2, time=0, scan=1, statement=1)
+
+    def watch(*names, **more):
+        wanted = [{"dataId": infos.get(name, {}).get("dataId", name), **more} for name in names]
+        return client.request("setDataBreakpoints", breakpoints=wanted)["breakpoints"]
+
+    assert not any(b["verified"] for b in watch("nothing") + watch("mode", accessType="read") + watch("mode", hitCondition="3"))
+    placed = watch("mode", "delay.q", "inputs.start")
+    assert all(b["verified"] for b in placed), placed
+    number = {b["id"]: name for b, name in zip(placed, ("mode", "delay.q", "inputs.start"))}
+    way = []
+    for _ in range(3):
+        stop = client.step("continue", 2)
+        assert stop["reason"] == "data breakpoint", stop
+        way.append(([number[i] for i in stop["hitBreakpointIds"]], *client.line(stop["threadId"]), client.request("lineshaft/state")))
+    names = [(changed, name) if name.startswith("task") else (changed, name, at) for changed, name, at, _ in way]
+    assert names == [(["inputs.start"], "task fast at 0.025 s"), (["mode"], "Motor (motor)", line("IF b < 5 THEN")),
+                     (["delay.q"], "task fast at 0.052 s")], names
+    for changed, *_, state in reversed(way[:2]):
+        stop = client.step("reverseContinue", 2)
+        found = client.request("lineshaft/state")
+        assert ([number[i] for i in stop["hitBreakpointIds"]], stop["reason"]) == (changed, "data breakpoint"), stop
+        assert all(found[key] == state[key] for key in ("time", "scan", "statement")), (found, state)
+    assert client.step("reverseContinue", 2)["reason"] == "entry"
+    watch("steps", "count")
+    found = []
+    for _ in range(4):
+        found.append((client.step("continue", 2)["reason"], *client.line(2)))
+    ramp = ("data breakpoint", "Ramp", line("steps := steps + 1;") + 1)
+    assert found == [ramp, ("data breakpoint", "task main at 0 s", 1), ramp, ("data breakpoint", "task main at 0.01 s", 1)], found
     client.end()
 
 

@@ -68,7 +68,7 @@ const checks = {
     const { client, capabilities, stop } = await begin({ stopOnEntry: true });
     assert.equal(stop.reason, "entry");
     for (const each of ["ConfigurationDoneRequest", "StepBack", "TerminateRequest", "ConditionalBreakpoints", "HitConditionalBreakpoints",
-      "LogPoints", "FunctionBreakpoints", "EvaluateForHovers", "SetVariable"]) assert.equal(capabilities[`supports${each}`], true, each);
+      "LogPoints", "FunctionBreakpoints", "DataBreakpoints", "EvaluateForHovers", "SetVariable"]) assert.equal(capabilities[`supports${each}`], true, each);
     assert.equal(capabilities.supportTerminateDebuggee, true);
     assert.equal(capabilities.exceptionBreakpointFilters[0].filter, "block_error");
     const terminated = client.waitForEvent("terminated");

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """`lineshaft debug` at random places of 20 programs: forwards, back and forwards again the state is that of a run in a
-piece; who wrote a variable last is what a walk by single steps finds; a run that nobody stops has the bytes of `run`.
+piece; who wrote a variable last, and where it changes next, is what a walk by single steps finds; a run that nobody stops has the bytes of `run`.
 
 usage: debug_properties.py LINESHAFT SOURCE_DIR [POINTS] [WRITERS] [SEED]
 """
@@ -189,6 +189,63 @@ def test_writers():
             count += 1
         client.end()
     return f"{count} variables, {none} of which nobody had written on the way"
+
+
+def key_of(place):
+    return place["time"], place["scan"] if place["scan"] > 0 else 1 << 60, place["statement"]
+
+
+def changed_between(walk, name, places, found):
+    """Whether the first of those steps that changes the variable is where it was found; None: none changes it. The way
+    back leaves out a change that it begins right behind."""
+    for i in places:
+        if walk[i - 1][1][name] == walk[i][1][name]:
+            continue
+        if key_of(walk[i - 1][0]) < key_of(found) <= key_of(walk[i][0]):
+            return True
+        if places.step > 0 or i != places[0]:
+            return False
+    return None
+
+
+def test_data_breakpoints():
+    """From a place of the walk on and back: to the next change, which lies between the two steps that show it."""
+    rng, count, none = random.Random(seed + 2), 0, 0
+    for program, parts in WALKED.items():
+        each = max(1, writers // len(WALKED))
+        client = stopped(program)
+        end = length_of(client)
+        client.end()
+        client = stopped(program)
+        thread = thread_with_code(client)
+        start = rng.choice((0, rng.randrange(1, end)))
+        client.step("lineshaft/goTo", thread, time=start, scan=1, statement=1)
+        walk = walk_of(client, thread, parts, max(300, min(1500, 4 * each)))
+        names = list(walk[0][1])
+        changing = [name for name in names if len({values[name] for _, values in walk}) > 1] or names
+        client.end()
+        client = stopped(program)
+        for _ in range(each):
+            at = rng.randrange(1, len(walk) - 1)
+            name = rng.choice(changing if rng.random() < 0.8 else names)
+            client.request("setDataBreakpoints", breakpoints=[])
+            client.step("lineshaft/goTo", thread, **place_of(walk[at][0]))
+            reference, short = reference_to(client, bottom(client, thread), name)
+            info = client.request("dataBreakpointInfo", variablesReference=reference, name=short)
+            client.request("setDataBreakpoints", breakpoints=[{"dataId": info["dataId"]}])
+            way = rng.choice(("continue", "reverseContinue"))
+            stop, found = client.step(way, thread), state(client)
+            places = range(at + 1, len(walk)) if way == "continue" else range(at, 0, -1)
+            where = (program, seed, way, at, name, walk[at][0], found)
+            known = changed_between(walk, name, places, found)
+            assert known is not False and (known is None or stop["reason"] == "data breakpoint"), (where, stop)
+            if known is None:
+                is_beyond = key_of(found) > key_of(walk[-1][0]) if way == "continue" else key_of(found) <= key_of(walk[0][0])
+                assert is_beyond or stop["reason"] in ("exit", "entry"), (where, stop)
+                none += 1
+            count += 1
+        client.end()
+    return f"{count} variables, {none} of which do not change on the way"
 
 
 def test_traces():

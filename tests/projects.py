@@ -139,6 +139,17 @@ def check_new_from():
         assert values.endswith((",0,1", ",false,true")), values
 
 
+def check_new_traces():
+    """The trace of a program with axes shows where they are, and not the pins of its blocks."""
+    write("traced.st", "PROGRAM Main\nVAR x, y : AXIS_REF; power : MC_Power; move : MC_MoveVelocity; scans : INT; END_VAR\n"
+          "power(Axis := x, Enable := TRUE);\nmove(Axis := y, Execute := power.Status, Velocity := 10.0);\nscans := scans + 1;\nEND_PROGRAM\n")
+    run("new", "traced", "--from", "traced.st")
+    text = (work / "traced.yaml").read_text()
+    signals = "[Main_x.position, Main_x.velocity, Main_y.position, Main_y.velocity, Main.scans]"
+    assert f"trace: {{task: main, signals: {signals}}}\n" in text, text
+    run("run", "--quiet", "traced.yaml", "--trace", "traced.csv")
+
+
 def check_page():
     """`check PROJECT` names causes with counts and the first place."""
     write("page/A.xml", drawn(RUNG))
@@ -969,6 +980,7 @@ def check_hostile():
 with tempfile.TemporaryDirectory() as temporary:
     work = pathlib.Path(temporary)
     check_new_from()
+    check_new_traces()
     check_inherited()
     check_page()
     check_configuration()

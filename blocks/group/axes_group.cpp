@@ -19,7 +19,7 @@ std::span<const Field> AxesGroup::fields() {
         output("state", &G::state, "", "of PLCopen").one_of(group_state_names),
         output("error", &G::error, "", "the group has stopped; MC_GroupReset ends it"),
         output("error_id", &G::error_id, "", "why").one_of(motion_error_names),
-        output("distance", &G::distance, "{unit}", "along the path, since it began"),
+        output("distance", &G::distance, "{unit}", "along the path since it began, or, at standstill, of all of the last one"),
         output("velocity", &G::velocity, "{unit}/s", "along the path"),
         output("acceleration", &G::acceleration, "{unit}/s^2", "along the path"),
         output("jerk", &G::jerk, "{unit}/s^3", "along the path"),
@@ -58,6 +58,7 @@ void AxesGroup::run(const Context& context, double dt) {
     if (path.lost) {
         fail(context, MotionError::not_finite);
         path.clear();
+        distance = 0;
         return come_to_stand(context);
     }
     look_at_moves(context);
@@ -113,7 +114,7 @@ void AxesGroup::come_to_stand(const Context& context) {
     path.clear();
     end_point = position;
     braking = interrupted = 0;
-    publish({});
+    publish({.path = {.position = distance}});
     if (holder.exists() && holder.told_end == 0) tell(context, holder, Progress::done);
     holder.told_end = 1;
     if (holder.holds == 0) holder = {};

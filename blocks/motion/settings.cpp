@@ -89,7 +89,9 @@ void SetOverride::scan(const Scan& now, const Context& context) {
 std::span<const Field> Home::fields() {
     static const auto table = pin::table(
         {pin::position("that is known then"),
-         input("HomingMode", &Home::mode, "", "how").one_of(home_mode_names),
+         input("HomingMode", &Home::mode, "",
+               "how; mcOther, which stands for modes of other controllers, is refused")
+             .one_of(home_mode_names),
          input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
          pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk(),
          pin::buffer_mode()},

@@ -74,6 +74,8 @@ class Adapter final : Front {
             {"evaluate", &Adapter::evaluate},
             {"setVariable", &Adapter::set_variable},
             {"setFunctionBreakpoints", &Adapter::set_function_breakpoints},
+            {"dataBreakpointInfo", &Adapter::data_breakpoint_info},
+            {"setDataBreakpoints", &Adapter::set_data_breakpoints},
             {"lineshaft/state", &Adapter::state},
             {"lineshaft/lastWriter", &Adapter::last_writer},
             {"lineshaft/goTo", &Adapter::go_to},
@@ -237,14 +239,28 @@ class Adapter final : Front {
         return {{"breakpoints", all}};
     }
 
-    /// A signal by its name, or an expression of Structured Text as the frame sees it.
+    Json data_breakpoint_info(const Json& arguments) {
+        const bool is_shown = number_in(arguments, "variablesReference") > 0;
+        const Shown shown =
+            is_shown ? variable_in(arguments) : watched(arguments, text_in(arguments, "name"));
+        return data_as_json(shown.name, name_for_watch(shown),
+                            session_->data().id_of(shown, frames()));
+    }
+
+    Json set_data_breakpoints(const Json& arguments) {
+        return debug::set_data_breakpoints(arguments, session().data());
+    }
+
     Json evaluate(const Json& arguments) {
-        const Linked& linked = standing().loaded().linked;
-        const std::string text = text_in(arguments, "expression");
-        if (const Signal* signal = linked.machine.find(text))
-            return {{"result", signal->describe(signal->value())},
-                    {"type", name_of(signal->type)},
-                    {"variablesReference", 0}};
+        Json body = to_json(watched(arguments, text_in(arguments, "expression")));
+        body["result"] = body["value"];
+        return body;
+    }
+
+    /// A signal by its name, or an expression of Structured Text as the frame sees it.
+    Shown watched(const Json& arguments, const std::string& text) {
+        const Signal* signal = standing().loaded().linked.machine.find(text);
+        if (signal) return show_signal(launched_->loaded.linked.machine, *signal);
         const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
         if (frames().empty() || number == 0 || number > frames_.size())
             throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
@@ -252,9 +268,7 @@ class Adapter final : Front {
         const Evaluated value =
             Expression(text, *frame.mark.file).value(frame, session_->made()->checked);
         if (!value.error.empty()) throw Refused(value.error);
-        Json body = to_json(value.shown);
-        body["result"] = body["value"];
-        return body;
+        return value.shown;
     }
 
     Shown variable_in(const Json& arguments) {
@@ -399,11 +413,16 @@ class Adapter final : Front {
         return {{"scopes", scopes}};
     }
 
+    /// As a program names it, or else a watch in its frame.
+    std::string name_for_watch(const Shown& shown) {
+        const std::string signal = signal_of(session_->loaded().linked, shown);
+        return signal.empty() ? shown.expression : signal;
+    }
+
     Json to_json(const Shown& shown) {
         Json variable{{"name", shown.name}, {"value", shown.value}};
         if (!shown.type.empty()) variable["type"] = shown.type;
-        const std::string signal = signal_of(session_->loaded().linked, shown);
-        const std::string& name = signal.empty() ? shown.expression : signal;
+        const std::string name = name_for_watch(shown);
         if (!name.empty()) variable["evaluateName"] = name;
         variable["variablesReference"] = keep(shown);
         if (shown.elements > 0) variable["indexedVariables"] = shown.elements;

@@ -207,7 +207,7 @@ class Reckoning {
 
     /// `axis.position` of an AXIS_REF.
     Operand field(const Operand& handle, const st::Expression& e) const {
-        const Referred to = block_of(handle.seat);
+        const Referred to = block_of(handle.seat.at, *handle.seat.frame);
         if (!to.at) throw Failed(fmt::format("'{}' is to nothing", e.operands[0]->place.text()));
         const auto& fields = to.block->type->fields;
         const Field* found = st::find_called(fields, e.token.text, &Field::name);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/code/meaning.hpp"
+
 namespace lineshaft::debug {
 
 namespace {
@@ -28,7 +30,8 @@ Frame frame_at(const st::Halt& halt, const st::Library::Made& made, const Machin
             .root = halt.root,
             .context = &halt.context,
             .code = &halt.code,
-            .machine = &machine};
+            .machine = &machine,
+            .of = &made.generated.code.routines[static_cast<std::size_t>(number)]};
 }
 
 std::size_t statement_at(const st::Code& code, std::uint64_t instruction) {
@@ -38,7 +41,78 @@ std::size_t statement_at(const st::Code& code, std::uint64_t instruction) {
         std::max<std::ptrdiff_t>(behind - code.statements.begin() - 1, 0));
 }
 
+/// A call that runs: the instruction that comes next in it, or its call that goes on.
+struct Level {
+    std::uint64_t instruction = 0, base = 0;
+};
+
+/// The outermost first.
+std::vector<Level> levels_of(const st::Halt& halt) {
+    std::vector<Level> levels;
+    for (std::uint32_t level = 0; level < halt.depth; ++level) {
+        const std::byte* call = halt.root + 8 * (halt.code.calls_slot() + 2 * level);
+        levels.push_back({read<std::uint64_t>(call) - 1, read<std::uint64_t>(call + 8)});
+    }
+    levels.push_back({halt.code.statements[halt.statement].instruction, halt.base});
+    return levels;
+}
+
+/// Goes along the pile of the scan: what each call that meets itself has put aside stands there,
+/// with its record behind, in the order of the calls.
+class Pile {
+  public:
+    Pile(std::byte* root, st::SlotRange slots) : root_(root), next_(slots.first), end_(slots.end) {}
+
+    /// Of a call that ran on that frame already; null: there is no such record.
+    std::byte* kept(std::uint64_t slots, std::uint64_t address, std::uint64_t running) {
+        for (std::uint64_t at = next_; at + slots + st::record_end <= end_; ++at) {
+            st::meaning::Frames::Record record;
+            std::memcpy(&record, root_ + 8 * (at + slots), sizeof record);
+            if (record.slots != slots || record.address != address || record.running != running)
+                continue;
+            next_ = at + slots + st::record_end;
+            return root_ + 8 * at;
+        }
+        return nullptr;
+    }
+
+  private:
+    std::byte* root_;
+    std::uint64_t next_, end_;
+};
+
+/// `frames`: the outermost first, as the levels.
+void find_aside(const st::Halt& halt, const std::vector<Level>& levels,
+                std::vector<Frame>& frames) {
+    Pile pile(halt.root, frames.front().of->pile);
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+        const Frame& called = frames[i];
+        const bool is_kept =
+            halt.code.instructions[levels[i - 1].instruction + 1].op == st::Op::swap_frame;
+        const auto meets = [&](const Frame& outer) {
+            return !outer.aside && outer.base == called.base && outer.of == called.of;
+        };
+        const auto end = frames.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto outer = std::find_if(frames.begin(), end, meets);
+        if (!is_kept || outer == end) continue;
+        outer->aside = pile.kept(called.of->kept(), levels[i].base, i - 1);
+    }
+}
+
 }  // namespace
+
+std::byte* Frame::seen(std::byte* at) const {
+    for (const Frame* frame = this; frame; frame = frame->outer) {
+        std::byte* kept = frame->aside;
+        for (const auto& [first, last] : {frame->of->variables, frame->of->temporaries}) {
+            std::byte* const begin = frame->base + 8 * std::size_t{first};
+            const std::ptrdiff_t bytes = 8 * std::ptrdiff_t{last - first};
+            if (at >= begin && at < begin + bytes) return kept ? kept + (at - begin) : at;
+            if (kept) kept += bytes;
+        }
+    }
+    return at;
+}
 
 FailedScan::FailedScan(Machine& machine, const st::Library::Made& made, const BlockPlace& block,
                        int task)
@@ -60,19 +134,18 @@ Frame innermost(const st::Halt& halt, const st::Library::Made& made, const Machi
 
 std::vector<Frame> frames_of(const st::Halt& halt, const st::Library::Made& made,
                              const Machine& machine) {
+    const std::vector<Level> levels = levels_of(halt);
     std::vector<Frame> frames;
-    const auto add = [&](std::uint64_t instruction, std::uint64_t base) {
-        Frame& frame = frames.emplace_back(frame_at(halt, made, machine, instruction, base));
-        frame.name = routine_at(made, instruction)->name;
-        frame.mark = made.generated.code.places[instruction].mark();
-    };
-    const st::StatementStart& statement = halt.code.statements[halt.statement];
-    add(statement.instruction, halt.base);
-    frames.front().mark = statement.place.mark();
-    for (std::uint32_t level = halt.depth; level > 0; --level) {
-        const std::byte* call = halt.root + 8 * (halt.code.calls_slot() + 2 * (level - 1));
-        add(read<std::uint64_t>(call) - 1, read<std::uint64_t>(call + 8));
+    for (const Level& level : levels) {
+        Frame& frame =
+            frames.emplace_back(frame_at(halt, made, machine, level.instruction, level.base));
+        frame.name = routine_at(made, level.instruction)->name;
+        frame.mark = made.generated.code.places[level.instruction].mark();
     }
+    frames.back().mark = halt.code.statements[halt.statement].place.mark();
+    find_aside(halt, levels, frames);
+    std::ranges::reverse(frames);
+    for (std::size_t i = 1; i < frames.size(); ++i) frames[i - 1].outer = &frames[i];
     const std::string instance = name_of_instance(machine, halt.root);
     if (!instance.empty()) frames.back().name += fmt::format(" ({})", instance);
     return frames;

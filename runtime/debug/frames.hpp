@@ -18,6 +18,13 @@ struct Frame {
     const Context* context = nullptr;  ///< of that
     const st::Code* code = nullptr;
     const Machine* machine = nullptr;
+    const Frame* outer = nullptr;  ///< that called it; null: none, or not looked for
+    const st::CodeRoutine* of = nullptr;
+    /// What a later call on its instance has put aside of its variables; null: nothing.
+    std::byte* aside = nullptr;
+
+    /// Where what it has at that place stands while later calls run.
+    std::byte* seen(std::byte* at) const;
 };
 
 /// A scan that a fault has ended, as if it stood where that happened.

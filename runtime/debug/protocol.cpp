@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 namespace lineshaft::debug {
 
 Json capabilities() {
@@ -12,6 +14,7 @@ Json capabilities() {
             {"supportsHitConditionalBreakpoints", true},
             {"supportsLogPoints", true},
             {"supportsFunctionBreakpoints", true},
+            {"supportsDataBreakpoints", true},
             {"supportsEvaluateForHovers", true},
             {"supportsSetVariable", true},
             {"exceptionBreakpointFilters",
@@ -43,6 +46,39 @@ Json breakpoint_as_json(const Breakpoint& breakpoint, const std::string& path, i
              {"source", source_of(path)}};
     if (!breakpoint.is_verified) one["message"] = breakpoint.error;
     return one;
+}
+
+Json data_as_json(const std::string& variable, const std::string& name, const std::string& id) {
+    if (!id.empty())
+        return {{"dataId", id},
+                {"description", name.empty() ? variable : name},
+                {"accessTypes", {"write"}}};
+    const std::string why = fmt::format("'{}' has no place that lasts from scan to scan", variable);
+    return {{"dataId", nullptr}, {"description", why}};
+}
+
+Json set_data_breakpoints(const Json& arguments, DataBreakpoints& data) {
+    std::vector<std::string> ids;
+    std::vector<std::string> errors;
+    for (const Json& each : list_in(arguments, "breakpoints")) {
+        const std::string access = text_in(each, "accessType");
+        const bool has_more = !(text_in(each, "condition") + text_in(each, "hitCondition")).empty();
+        errors.push_back(!access.empty() && access != "write"
+                             ? "it stops where the value changes, which is 'write'"
+                         : has_more ? "it stops at each change, and counts nothing"
+                                    : "");
+        ids.push_back(errors.back().empty() ? text_in(each, "dataId") : "");
+    }
+    Json all = Json::array();
+    for (const DataBreakpoints::Placed& placed : data.set(ids)) {
+        const std::string& error = errors[all.size()].empty() ? placed.error : errors[all.size()];
+        all.push_back({{"verified", error.empty()}});
+        if (error.empty())
+            all.back()["id"] = placed.number;
+        else
+            all.back()["message"] = error;
+    }
+    return {{"breakpoints", all}};
 }
 
 }  // namespace lineshaft::debug

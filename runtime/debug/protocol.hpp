@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/debug/breakpoints.hpp"
+#include "runtime/debug/data_breakpoints.hpp"
 #include "runtime/messages/messages.hpp"
 
 namespace lineshaft::debug {
@@ -25,5 +26,11 @@ std::vector<Wanted> wanted_in(const Json& arguments, int shift);
 
 /// What became of a breakpoint, for a client whose first line has the number 1 - `shift`.
 Json breakpoint_as_json(const Breakpoint& breakpoint, const std::string& path, int shift);
+
+/// Whether a variable can have a data breakpoint: `id` is empty where it cannot.
+Json data_as_json(const std::string& variable, const std::string& name, const std::string& id);
+
+/// Sets those that a client wants, and tells what became of each.
+Json set_data_breakpoints(const Json& arguments, DataBreakpoints& data);
 
 }  // namespace lineshaft::debug

@@ -73,6 +73,7 @@ void Session::start_at(Executive& executive, std::int64_t time) {
     recounts_ = false;
     if (cpu_time() - begun > ms) keep(true);  // who looked here looks again
     signals_.begin(time);
+    data_.begin();
 }
 
 std::optional<Position> Session::search(std::int64_t from, const Position& end, const Plan& plan) {
@@ -88,7 +89,7 @@ std::optional<Position> Session::search(std::int64_t from, const Position& end, 
         if (!run_freely(limit, true)) break;
     executive.remove(*this);
     const std::optional<Position> found = search_->found;
-    risen_ = search_->risen;
+    landing_ = search_->why;
     search_.reset();
     return found;
 }
@@ -125,10 +126,10 @@ bool Session::matches(const Search& search, const st::Halt& halt) {
 /// Where the jump leads to.
 Position Session::target() {
     const Plan plan = *std::exchange(jump_, {});
-    risen_.clear();
+    landing_.reset();
     const Way way = plan.command.way;
     if (way == Way::to) return plan.command.to;
-    if (way == Way::back_go && breakpoints_.empty() && signals_.empty()) return {};
+    if (way == Way::back_go && breakpoints_.empty() && signals_.empty() && data_.empty()) return {};
     return last_before(plan.from, plan).value_or(Position{});
 }
 
@@ -145,7 +146,7 @@ void Session::wander() {
         between_ = Stop{"entry", "the beginning of the run"};
     } else if (to.scan == Position::behind) {
         start_at(executive, to.time + 1);
-        between_ = risen_.empty() ? Stop{"step"} : Stop{"function breakpoint", risen_};
+        between_ = std::exchange(landing_, {}).value_or(Stop{"step"});
         instant_ = to.time;
     } else {
         start_at(executive, to.time);

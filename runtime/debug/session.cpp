@@ -33,6 +33,7 @@ Session::Session(Loaded& loaded, Front& front)
       made_(find_made(machine_)),
       breakpoints_(made_),
       signals_(loaded),
+      data_(machine_),
       has_code_(machine_.tasks.size()) {
     if (made_) looking_ = std::make_unique<Looking>(made_->generated.code, *this);
     for (std::size_t i = 0; i < machine_.blocks.size(); ++i)
@@ -60,6 +61,7 @@ RunReport Session::run(RunOptions how) {
         executive_ = &executive;
         note_beginning();
         signals_.begin(0);
+        data_.begin();
         if (stop_on_entry && has_code(-1))
             plan_ = Plan{{Way::into, -1}, here_};
         else if (stop_on_entry)
@@ -126,7 +128,7 @@ bool Session::run_freely(std::int64_t limit, bool is_quiet) {
 /// Who runs without a stop in it runs as without a debugger.
 void Session::attach() {
     if (!made_) return;
-    const bool is_wanted = plan_ || goal_ || search_ || !breakpoints_.empty();
+    const bool is_wanted = plan_ || goal_ || search_ || !breakpoints_.empty() || !data_.empty();
     made_->generated.code.probe = is_wanted ? looking_.get() : nullptr;
 }
 
@@ -135,16 +137,16 @@ bool Session::steps(const st::CodeRoutine& routine, const Scan& now) {
     instant_ = now.time;
     ++scans_;
     statements_ = 0;
-    if (quiet_) return false;
+    if (quiet_ && !recounts_) return false;
     if (goal_ || plan_) return true;
     if (search_ && search_->plan.command.way != Way::back_go) return true;
-    return breakpoints_.are_reached_by(routine);
+    return (!recounts_ && !data_.empty()) || breakpoints_.are_reached_by(routine);
 }
 
 void Session::look(const st::Halt& halt) {
     constexpr std::uint32_t often = 1024;
     const Position now{instant_, scans_, ++statements_};
-    if (quiet_) return;
+    if (quiet_ && !recounts_) return;
     here_ = now;
     Stop stop{.reason = {}, .task = halt.context.task};
     if (search_) {
@@ -192,10 +194,12 @@ std::vector<Breakpoint> Session::set_breakpoints(const std::string& path,
     return made;
 }
 
-/// Tells which breakpoints it is that the statement stops at.
+/// Tells which breakpoints it is that the statement stops at, or the one before it has changed.
 bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
+    stop.breakpoints = data_.changed();
+    if (!stop.breakpoints.empty()) stop.reason = "data breakpoint";
     const auto& here = breakpoints_.at(halt.statement);
-    if (here.empty()) return false;
+    if (here.empty()) return !stop.breakpoints.empty();
     const Frame frame = innermost(halt, *made_, machine_);
     for (const Breakpoint* breakpoint : here) {
         if (breakpoint->condition) {
@@ -206,14 +210,14 @@ bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
         const bool counts = here_ > set_at_[breakpoint->id];
         const std::int64_t count = counts ? ++hits_[breakpoint->id] : 0;
         if (breakpoint->hits && !(counts && breakpoint->hits->holds(count))) continue;
-        if (breakpoint->log.empty())
+        if (breakpoint->log.empty()) {
             stop.breakpoints.push_back(breakpoint->id);
-        else if (tells)
+            stop.reason = "breakpoint";
+        } else if (tells) {
             front_.log(breakpoint->logged(frame, made_->checked));
+        }
     }
-    if (stop.breakpoints.empty()) return false;
-    stop.reason = "breakpoint";
-    return true;
+    return !stop.breakpoints.empty();
 }
 
 /// Of a search for what changed some bytes: it was what came before this.
@@ -238,25 +242,33 @@ void Session::scanned(int task, const Scan&) {
     if (!quiet_ && !goal_ && !has_code(task)) plain_scan_ = task;
 }
 
+std::optional<Stop> Session::stop_between(std::int64_t time) {
+    std::string risen = signals_.empty() ? "" : signals_.risen(time);
+    std::vector<int> changed = data_.changed();
+    if (!risen.empty()) return Stop{"function breakpoint", std::move(risen)};
+    if (changed.empty()) return {};
+    return Stop{.reason = "data breakpoint", .breakpoints = std::move(changed)};
+}
+
 void Session::settled(std::int64_t time, std::int64_t) {
     instant_ = time;
     const int task = std::exchange(plain_scan_, -1);
     const Position now{time};
     if (quiet_ || goal_ || recounts_) return;
-    const std::string risen = signals_.empty() ? "" : signals_.risen(time);
+    std::optional<Stop> why = stop_between(time);
     if (search_) {
         const Way way = search_->plan.command.way;
         watch(now, false);
         if (now < search_->end && ((way == Way::back && search_->plan.command.task == task) ||
-                                   (way == Way::back_go && !risen.empty()))) {
+                                   (way == Way::back_go && why))) {
             search_->found = now;
-            search_->risen = risen;
+            search_->why = std::move(why);
         }
         return;
     }
     if (between_) return;
-    if (!risen.empty())
-        between_ = Stop{"function breakpoint", risen};
+    if (why)
+        between_ = std::move(why);
     else if (plan_ && task >= 0 && plan_->command.task == task)
         between_ = Stop{.reason = "step", .task = task};
     if (between_) executive_->hold();

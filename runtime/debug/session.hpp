@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/debug/breakpoints.hpp"
+#include "runtime/debug/data_breakpoints.hpp"
 #include "runtime/debug/history.hpp"
 #include "runtime/debug/signal_conditions.hpp"
 #include "runtime/run/single_run.hpp"
@@ -111,6 +112,7 @@ class Session final : Observer, EventSink {
     std::vector<Breakpoint> set_breakpoints(const std::string& path,
                                             const std::vector<Wanted>& wanted);
     SignalConditions& signals() { return signals_; }
+    DataBreakpoints& data() { return data_; }
     bool stop_on_error = false;
     const Loaded& loaded() const { return loaded_; }
     const st::Library::Made* made() const { return made_; }
@@ -136,9 +138,9 @@ class Session final : Observer, EventSink {
         Position end;
         Plan plan;
         std::optional<Position> found = {};
-        std::string bytes = {};  ///< of writer: as they were when last looked at
-        Position last = {};      ///< of writer: then
-        std::string risen = {};  ///< the signal's condition that it found
+        std::string bytes = {};        ///< of writer: as they were when last looked at
+        Position last = {};            ///< of writer: then
+        std::optional<Stop> why = {};  ///< what it found between two instants
     };
 
     // What is seen.
@@ -150,6 +152,7 @@ class Session final : Observer, EventSink {
     bool is_reached(const Plan& plan, int task, std::uint32_t depth, std::int64_t scan) const;
     bool matches(const Search& search, const st::Halt& halt);
     bool hits(const st::Halt& halt, Stop& stop, bool tells);
+    std::optional<Stop> stop_between(std::int64_t time);
     void watch(const Position& now, bool is_statement);
 
     // Forwards.
@@ -183,6 +186,7 @@ class Session final : Observer, EventSink {
     const st::Library::Made* made_;
     Breakpoints breakpoints_;
     SignalConditions signals_;
+    DataBreakpoints data_;
     std::map<int, std::int64_t> hits_;  ///< of breakpoints, by their numbers
     std::map<int, Position> set_at_;    ///< likewise
     std::vector<HandChange> changes_;
@@ -209,7 +213,7 @@ class Session final : Observer, EventSink {
     std::optional<Plan> plan_;
     std::optional<Stop> between_;  ///< stands still when the instant has passed
     std::optional<Plan> jump_;     ///< back
-    std::string risen_;            ///< what the jump leads to, of conditions of signals
+    std::optional<Stop> landing_;  ///< what the jump leads to, between two instants
     std::optional<Position> goal_;
     std::optional<Search> search_;
     bool quiet_ = false;     ///< nothing is told, nothing stops

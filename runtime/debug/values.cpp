@@ -83,20 +83,31 @@ std::string field_text(const Field& field, const std::byte* block) {
                     field.unit.find('{') == std::string_view::npos ? field.unit : "");
 }
 
-List fields_inside(const BlockType& kind, const std::byte* block) {
-    List fields;
-    for (const Field& field : kind.fields)
-        fields.push_back({.name = std::string(field.name),
-                          .value = field_text(field, block),
-                          .type = std::string(name_of(field.direction)),
-                          .at = block + field.offset,
-                          .bytes = size_of(field.type)});
-    return fields;
+List fields_inside(const BlockType& kind, const std::byte* block, const Frame& frame);
+
+/// An AXIS_REF or another block of the program, with what is in that.
+void show_referred(Shown& shown, const Referred& to, const Frame& frame) {
+    shown.value = to.at ? to.block->name : "none";
+    if (!to.at) return;
+    shown.inside = [to, &frame](auto, auto) {
+        return fields_inside(*to.block->type, to.at, frame);
+    };
 }
 
-std::string handle_text(const Seat& seat) {
-    const Referred to = block_of(seat);
-    return to.at ? to.block->name : "none";
+List fields_inside(const BlockType& kind, const std::byte* block, const Frame& frame) {
+    List fields;
+    for (const Field& field : kind.fields) {
+        const std::byte* const at = block + field.offset;
+        Shown& shown = fields.emplace_back(Shown{.name = std::string(field.name),
+                                                 .value = field_text(field, block),
+                                                 .type = std::string(name_of(field.direction)),
+                                                 .at = at,
+                                                 .bytes = size_of(field.type)});
+        if (field.direction != Direction::in_out) continue;
+        shown.type = field.refers;
+        show_referred(shown, block_of(at, frame), frame);
+    }
+    return fields;
 }
 
 void show_parts(Shown& shown, const Seat& seat) {
@@ -125,12 +136,11 @@ void show_parts(Shown& shown, const Seat& seat) {
             break;
         case Kind::standard:
             shown.inside = [seat](auto, auto) {
-                return fields_inside(*seat.type->standard, seat.at);
+                return fields_inside(*seat.type->standard, seat.at, *seat.frame);
             };
             break;
         case Kind::handle:
-            if (const Referred to = block_of(seat); to.at)
-                shown.inside = [to](auto, auto) { return fields_inside(*to.block->type, to.at); };
+            show_referred(shown, block_of(seat.at, *seat.frame), *seat.frame);
             break;
         case Kind::reference:
             if (read<std::uint64_t>(seat.at) != 0)
@@ -152,7 +162,7 @@ std::string text_of(const Seat& seat) {
         case Kind::interface:
             return read<std::uint64_t>(seat.at) == 0 ? "NULL" : seat.type->name;
         case Kind::handle:
-            return handle_text(seat);
+            return {};  // see show_referred
         case Kind::text: {
             const auto length =
                 std::min<std::uint64_t>(read<std::uint64_t>(seat.at),
@@ -192,17 +202,18 @@ Seat target_of(const Seat& reference) {
         if (!st::same_type(*code.shapes[shape].type, *to)) continue;
         if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, bit, shape))
             return {to,
-                    st::place_of(address + *slot, reference.frame->root, *reference.frame->context),
+                    reference.frame->seen(st::place_of(address + *slot, reference.frame->root,
+                                                       *reference.frame->context)),
                     reference.frame};
     }
     return {};
 }
 
-Referred block_of(const Seat& handle) {
-    const auto number = read<std::int64_t>(handle.at);
-    if (number < 0 || number >= handle.frame->context->blocks) return {};
-    const std::byte* at = handle.frame->context->instances[number];
-    const auto& blocks = handle.frame->machine->blocks;
+Referred block_of(const std::byte* handle, const Frame& frame) {
+    const auto number = read<std::int64_t>(handle);
+    if (number < 0 || number >= frame.context->blocks) return {};
+    const std::byte* at = frame.context->instances[number];
+    const auto& blocks = frame.machine->blocks;
     const auto it = std::ranges::find_if(
         blocks, [&](const BlockPlace& b) { return b.live == at || b.published == at; });
     if (it == blocks.end()) return {};
@@ -218,11 +229,12 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
     const std::size_t offset = 8 * std::size_t{variable.slot};
     switch (variable.space) {
         case st::Space::frame:
-            return {variable.type, base + offset, &frame};
+            return {variable.type, frame.seen(base + offset), &frame};
         case st::Space::reference: {
-            const auto address = read<std::uint64_t>(base + offset);
+            const auto address = read<std::uint64_t>(frame.seen(base + offset));
             if (address == 0) return {};
-            return {variable.type, st::place_of(address, frame.root, *frame.context), &frame};
+            return {variable.type, frame.seen(st::place_of(address, frame.root, *frame.context)),
+                    &frame};
         }
         case st::Space::global:
             return {variable.type, global_at(variable.global, frame) + offset, &frame};
@@ -329,16 +341,24 @@ Shown show_blocks(const Linked& linked, int task) {
     return group("Blocks", std::move(blocks));
 }
 
+Shown show_signal(const Machine& machine, const Signal& signal) {
+    const std::byte* at = signal.slot;
+    if (signal.port.instance >= 0) {
+        const BlockPlace& block = machine.blocks[static_cast<std::size_t>(signal.port.instance)];
+        at = block.live + block.type->fields[static_cast<std::size_t>(signal.port.field)].offset;
+    }
+    return {.name = signal.name,
+            .value = signal.describe(signal.value()),
+            .type = std::string(name_of(signal.type)),
+            .signal = signal.name,
+            .at = at,
+            .bytes = size_of(signal.type)};
+}
+
 Shown show_inputs(const Linked& linked) {
     List inputs;
     for (const Signal& signal : linked.machine.signals)
-        if (signal.port.instance < 0)
-            inputs.push_back({.name = signal.name,
-                              .value = signal.describe(signal.value()),
-                              .type = std::string(name_of(signal.type)),
-                              .signal = signal.name,
-                              .at = signal.slot,
-                              .bytes = size_of(signal.type)});
+        if (signal.port.instance < 0) inputs.push_back(show_signal(linked.machine, signal));
     return group("Inputs of the program", std::move(inputs));
 }
 

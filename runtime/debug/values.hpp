@@ -40,7 +40,7 @@ struct Referred {
     const BlockPlace* block = nullptr;
     const std::byte* at = nullptr;
 };
-Referred block_of(const Seat& handle);
+Referred block_of(const std::byte* handle, const Frame& frame);
 
 /// What is in it, as a watch reaches it: a group has no name in the language.
 std::vector<Shown> parts_of(const Shown& whole, std::size_t first, std::size_t count);
@@ -60,6 +60,8 @@ std::vector<Shown> scopes_of(const Frame& frame);
 /// What a program's file has: the blocks of a task, each with its fields by direction and where its
 /// inputs come from; inputs of the program, and what is forced.
 Shown show_blocks(const Linked& linked, int task);
+/// As others see its value, where its own block has it.
+Shown show_signal(const Machine& machine, const Signal& signal);
 Shown show_inputs(const Linked& linked);
 Shown show_forces(const Linked& linked, std::int64_t now);
 

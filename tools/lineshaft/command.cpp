@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <set>
 
 #include <fmt/core.h>
 #include <poll.h>
@@ -128,8 +129,18 @@ Exit report(const Diagnostics& diagnostics, bool json) {
     return exit;
 }
 
+/// The folder that a file would be in and that is not there; empty: it is there.
+static std::string missing_folder(const std::string& file) {
+    std::error_code unknown;  // opening tells it
+    const auto folder = std::filesystem::path(file).parent_path();
+    const bool is_missing = !folder.empty() && std::filesystem::status(folder, unknown).type() ==
+                                                   std::filesystem::file_type::not_found;
+    return is_missing ? folder.string() : "";
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    Diagnostics& out) {
+    std::set<std::string> missing;
     for (auto output = outputs.begin(); output != outputs.end(); ++output) {
         if (output->empty()) continue;
         if (was_read(*output) || std::ranges::any_of(inputs, [&](const std::string& input) {
@@ -140,6 +151,11 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         if (std::find(outputs.begin(), output, *output) != output)
             out.add(code::output_is_an_input, {}, fmt::format("two outputs would be '{}'", *output),
                     "name another file");
+        const std::string folder = missing_folder(*output);
+        if (!folder.empty() && missing.insert(folder).second)
+            out.add(code::unusable_option, {},
+                    fmt::format("there is no folder '{}' to write '{}' to", folder, *output),
+                    "make it, or name another one");
     }
 }
 

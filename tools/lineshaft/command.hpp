@@ -55,7 +55,8 @@ void add_strict(CLI::App& command, bool& strict);
 void add_native(CLI::App& command);
 
 /// L0509 for each of `outputs` that is, by whatever name, a file which has been read so far or one
-/// of `inputs`, which are still to be read, or that is named twice. Empty names are none.
+/// of `inputs`, which are still to be read, or that is named twice; L0502 for a folder of theirs
+/// that is not there. Empty names are none.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    Diagnostics& out);
 

@@ -25,10 +25,9 @@ constexpr const char* debug_help =
     "Speaks the Debug Adapter Protocol on its standard streams, or with one client at --port: an\n"
     "editor starts it. Arguments of 'launch': program, the file (else the one of this command\n"
     "line); args, options as of this command, ['--set', 'x=1', '--trace', 'FILE.csv']; cwd;\n"
-    "stopOnEntry; stopAtEnd; test, the name of a TEST, if the file is one of tests. Breakpoints\n"
-    "stand in Structured Text; tasks are threads; stepBack and reverseContinue go back. The run "
-    "is\n"
-    "that of 'lineshaft run', to the same bytes.\n"
+    "stopOnEntry; stopAtEnd; test, the name of a TEST, if the program is a file of tests, or a\n"
+    "folder with some. Breakpoints stand in Structured Text; tasks are threads; stepBack and\n"
+    "reverseContinue go back. The run is that of 'lineshaft run', to the same bytes.\n"
     "runtime/debug/README.md says how an editor connects.";
 
 struct DebugOptions {
@@ -70,8 +69,8 @@ void add_options(CLI::App& app, DebugOptions& options) {
                    "Do again what was done from outside, as a recording has it")
         ->type_name("FILE.yaml");
     app.add_option("--test", options.test,
-                   "Run this TEST of the program, which is a file of tests: its name, or the "
-                   "beginning of it")
+                   "Run this TEST of the program, which is a file of tests or a folder with some: "
+                   "its name, or the beginning of it")
         ->type_name("NAME");
     app.add_option("--record", options.record,
                    "Write what was changed by hand to this file, for --recording")
@@ -100,45 +99,52 @@ void take_arguments(DebugOptions& options, const std::string& program,
                 "leave --json, --resume and --checkpoint-every out");
 }
 
-/// The one of that name, else the first that begins so: its suite and number there.
-std::optional<std::pair<st::TestSuite, std::size_t>> find_test(
-    const std::vector<st::TestSuite>& suites, const std::string& name) {
-    std::optional<std::pair<st::TestSuite, std::size_t>> found;
-    for (const st::TestSuite& suite : suites)
-        for (std::size_t i = 0; i < suite.tests().size(); ++i) {
-            if (suite.tests()[i].name == name) return std::pair(suite, i);
-            if (!found && suite.tests()[i].name.starts_with(name)) found.emplace(suite, i);
-        }
+struct FoundTest {
+    st::TestSuite suite;
+    std::size_t number = 0;  ///< there
+    std::shared_ptr<const SourceFile> file;
+};
+
+/// Of a file of tests, or of a folder with such files: the one of that name, else the first that
+/// begins so.
+std::optional<FoundTest> find_test(const std::string& path, const std::string& name,
+                                   Diagnostics& out) {
+    std::optional<FoundTest> found;
+    std::vector<std::string> names;
+    for (const TestFile& tests : find_tests(path, {})) {
+        Diagnostics wrong;
+        const auto file = read_source(tests.path, wrong);
+        if (file && !tests.is_named && !has_tests(file)) continue;
+        const auto suites = file ? compile_tests(tests, file, wrong) : std::vector<st::TestSuite>();
+        for (const st::TestSuite& suite : suites)
+            for (std::size_t i = 0; i < suite.tests().size(); ++i) {
+                const std::string& each = suite.tests()[i].name;
+                if (each == name) return FoundTest{suite, i, file};
+                if (!found && each.starts_with(name)) found = FoundTest{suite, i, file};
+                names.push_back(each);
+            }
+        if (tests.is_named && !wrong.empty()) return out = wrong, std::nullopt;
+    }
+    if (!found)
+        out.add(code::unusable_option, {}, fmt::format("{} has no TEST '{}'", path, name),
+                fmt::format("there are: {}", fmt::join(names, ", ")));
     return found;
 }
 
 /// A machine whose first scan is the test.
 std::optional<Loaded> load_test(const DebugOptions& options, Diagnostics& out) {
-    const std::string& path = options.run.program;
-    const auto file = read_source(path, out);
-    const std::vector<TestFile> files = file ? find_tests(path, {}) : std::vector<TestFile>();
-    if (files.empty()) return {};
-    const std::vector<st::TestSuite> suites = compile_tests(files.front(), file, out);
-    if (!out.empty()) return {};
-    const auto test = find_test(suites, options.test);
-    if (!test) {
-        std::vector<std::string> names;
-        for (const st::TestSuite& suite : suites)
-            for (const st::Test& each : suite.tests()) names.push_back(each.name);
-        out.add(code::unusable_option, {}, fmt::format("{} has no TEST '{}'", path, options.test),
-                fmt::format("there are: {}", fmt::join(names, ", ")));
-        return {};
-    }
+    const auto test = find_test(options.run.program, options.test, out);
+    if (!test) return {};
     auto kinds = std::make_shared<Catalog>();
-    for (const BlockType& kind : test->first.kinds(test->second)) kinds->add(kind);
+    for (const BlockType& kind : test->suite.kinds(test->number)) kinds->add(kind);
     std::string text =
         "lineshaft: 1\ntasks: {test: {every: 1 ms}}\nrun: {for: 0.5 ms}\nblocks:\n"
         "  TEST: {type: TEST, task: test}\n";
-    for (const auto& [name, kind] : test->first.objects())
+    for (const auto& [name, kind] : test->suite.objects())
         text += fmt::format("  {}: {{type: {}, task: test}}\n", name, kind);
     const auto program = std::make_shared<SourceFile>(SourceFile{"TEST.yaml", text});
     Loaded loaded{.program = read_program(program, {}, out), .linked = {}};
-    loaded.program.file = file;
+    loaded.program.file = test->file;
     loaded.linked = link(loaded.program, standard_blocks(), out, std::move(kinds));
     return loaded;
 }

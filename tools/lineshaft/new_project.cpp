@@ -209,16 +209,27 @@ std::vector<NewBlock> called_with_axes(const st::Library& library,
     return called;
 }
 
-/// What is plainly named, outputs before all others.
-std::vector<std::string> signals_of(const st::Library& library, const NewBlock& block) {
+/// Where each axis is and how fast.
+std::vector<std::string> motions_of(const std::vector<NewBlock>& blocks) {
+    std::vector<std::string> signals;
+    for (const NewBlock& block : blocks)
+        if (block.type == "axis")
+            for (const char* field : {"position", "velocity"})
+                signals.push_back(fmt::format("{}.{}", block.name, field));
+    return signals;
+}
+
+/// What is plainly named, outputs before all others; `own`: without the parts of blocks in it.
+std::vector<std::string> signals_of(const st::Library& library, const NewBlock& block, bool own) {
     std::vector<std::string> signals;
     const auto kind = std::ranges::find(library.kinds(), block.type, &BlockType::name);
     for (const bool outputs : {true, false})
         for (const Field& field : kind->fields) {
             const bool is_output = field.direction == Direction::output;
             const bool is_read = is_output || field.direction == Direction::local;
-            const bool is_plain = std::ranges::all_of(
-                field.name, [](char c) { return is_letter(c) || is_digit(c) || c == '.'; });
+            const bool is_plain = std::ranges::all_of(field.name, [&](char c) {
+                return is_letter(c) || is_digit(c) || (c == '.' && !own);
+            });
             const bool is_own_error = field.name == "error" || field.name == "error_id";
             if (is_read && is_plain && !is_own_error && is_output == outputs &&
                 signals.size() < most_signals)
@@ -387,7 +398,9 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}run: {{for: 1 s}}\n",
         name, include_option(path, file), sources_text(*chosen, file),
         text_of(project, tasks, blocks) + inputs_text(addresses));
-    std::vector<std::string> signals = signals_of(*library, programs.front());
+    std::vector<std::string> signals = motions_of(blocks);
+    const bool moves = !signals.empty();
+    std::ranges::move(signals_of(*library, programs.front(), moves), std::back_inserter(signals));
     add_addresses(addresses, signals);
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,

@@ -70,6 +70,14 @@ TEST_CASE("group: a whole circle by its centre, and a rotary axis follows by tim
     CHECK(lowest == Approx(-20).epsilon(1e-6));
     CHECK(bench.number("x.position") == 0);
     CHECK(bench.number("turn.position") == 310);
+    CHECK(bench.number("group.distance") == Approx(40 * std::numbers::pi).epsilon(1e-12));
+    bench.step(5);
+    CHECK(bench.number("group.distance") == Approx(40 * std::numbers::pi).epsilon(1e-12));
+    bench.set("circle.Execute", false);
+    bench.step(2);
+    bench.set("circle.Execute", true);
+    bench.step(4);
+    CHECK(bench.number("group.distance") < 1);
 }
 
 TEST_CASE("group: arcs by a border, and by a radius, relative and clockwise") {
