@@ -25,7 +25,7 @@ class Document {
         while (!p_.is(Word::end_of_file)) {
             if (p_.is(Word::network_))
                 read_network();
-            else if (is_end_of_block(p_.take().word))
+            else if (is_end_of_block(read_token().word))
                 finish_block();
         }
         finish_block();
@@ -43,6 +43,13 @@ class Document {
     void copy_to(std::size_t end) {
         made_.copy(text_, {copied_, end});
         copied_ = end;
+    }
+
+    /// `count : Int` is noted.
+    const st::Token& read_token() {
+        if (p_.is_name() && p_.next().word == Word::colon && st::is_name(p_.next(2).word))
+            variables_.know(p_.here().text, p_.next(2).text);
+        return p_.take();
     }
 
     /// Variables stand before the first of a block, and what is said of that.

@@ -42,6 +42,11 @@ Value scaled(Running& r, std::string_view function) {
                                        {"MAX", r.operand("max")}}));
 }
 
+std::vector<Argument> positions(std::vector<Argument> given) {
+    for (Argument& each : given) each.pin.clear();
+    return given;
+}
+
 Value executed(Running& r, std::string_view input, std::string_view output) {
     if (r.it.callee.is_empty()) {
         r.out.add(code::something_else_expected, r.it.place,
@@ -86,22 +91,23 @@ Value arithmetic(Running& r) {
     Value made;
     for (const auto& pin : r.it.pins)
         if (!pin.is_output && !pin.value.is_empty())
-            made = made.is_empty() ? pin.value : r.binary(made, name, pin.value);
+            made = made.is_empty() ? r.typed(pin.value) : r.binary(made, name, r.typed(pin.value));
     return result(r, made);
 }
 
 Value negation(Running& r) {
     Value made = r.word("-");
-    made.text.append(enclosed(r.operand("in"), r.it.place));
+    made.text.append(enclosed(r.typed(r.operand("in")), r.it.place));
     return result(r, made);
 }
 
 Value inversion(Running& r) {
-    return result(r, negated(r.operand("in"), r.it.place));
+    return result(r, negated(r.typed(r.operand("in")), r.it.place));
 }
 
 Value power_of(Running& r) {
-    return result(r, r.binary(r.operand("in1"), " ** ", r.operand("in2")));
+    return result(r, r.binary(r.typed(r.operand("in1"), "SrcType1"), " ** ",
+                              r.typed(r.operand("in2"), "SrcType2")));
 }
 
 Value increment(Running& r) {
@@ -136,9 +142,15 @@ Value normalize(Running& r) {
 
 /// A function of what stands at its inputs, whose names are those of SCL where it has some.
 Value plain_function(Running& r) {
+    return result(r, r.call(upper(r.it.name), positions(r.inputs())));
+}
+
+/// What it gives has the type of what it takes, or that decides how it is calculated.
+Value typed_function(Running& r) {
     std::vector<Argument> given = r.inputs();
-    for (Argument& each : given) each.pin.clear();
-    return result(r, r.call(upper(r.it.name), given));
+    for (Argument& each : given)
+        if (!same_name(each.pin, "n")) each.value = r.typed(each.value);
+    return result(r, r.call(upper(r.it.name), positions(std::move(given))));
 }
 
 Value multiplexer(Running& r) {
@@ -159,7 +171,7 @@ Value formula(Running& r) {
         at = std::find_if_not(word, text.end(), is_part);
         const auto* pin = word == at ? nullptr : r.it.find({word, at});
         if (pin && !pin->is_output && !pin->name.empty())
-            made.text.append(enclosed(pin->value, r.it.place));
+            made.text.append(enclosed(r.typed(pin->value), r.it.place));
         else
             made.text.write({word, at}, r.it.place);
     }

@@ -18,6 +18,7 @@ Value limit(Running& r);
 Value scale(Running& r);
 Value normalize(Running& r);
 Value plain_function(Running& r);
+Value typed_function(Running& r);
 Value multiplexer(Running& r);
 Value formula(Running& r);
 Value timer(Running& r);

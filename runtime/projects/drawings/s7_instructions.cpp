@@ -290,9 +290,10 @@ constexpr Row rows[] = {
     {normalize, " normalize norm_x "},
     {multiplexer, " mux "},
     {formula, " calculate calc "},
-    {plain_function,
-     " abs min max sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap sel "
-     "shl shr rol ror "},
+    {plain_function, " min max sel "},
+    {typed_function,
+     " abs sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap shl shr rol "
+     "ror "},
     {timer, " tp ton tof tonr "},
     {up_counter, " ctu "},
     {down_counter, " ctd "},

@@ -27,6 +27,9 @@ struct Running {
 
     /// Of a pin at which something must be; else that is told.
     Value operand(std::string_view pin) const;
+    /// As a value of the type that the box calculates in, where that is a number or a
+    /// bit string. A literal takes it from what stands beside it.
+    Value typed(const Value& value, std::string_view which = "SrcType") const;
     /// Power as it is before the instruction does anything.
     Value enable();
 

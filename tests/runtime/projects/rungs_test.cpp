@@ -105,6 +105,18 @@ TEST_CASE("boxes do something where power is at them, and it goes on") {
           "STRG_VAL(in := '5', format := 16#0, p := 1, out => #y);\n");
 }
 
+TEST_CASE("a box calculates in the type that its template says") {
+    const auto box = [](const std::string& type, const std::string& call) {
+        return text_of(rung("{ S7_Templates := \"SrcType := " + type + "\" }\n" + call));
+    };
+    CHECK(box("DInt", "Mul( in1 := #x, in2 := 100, out => #x )") == "#x := TO_DINT(#x) * 100;\n");
+    CHECK(box("Int", "Mul( in1 := #x, in2 := #y, out => #z )") == "#z := #x * #y;\n");
+    CHECK(box("Real", "Neg( in := #x, out => #r )") == "#r := -TO_REAL(#x);\n");
+    CHECK(box("DWord", "Rol( in := #x, n := #y, out => #z )") == "#z := ROL(TO_DWORD(#x), #y);\n");
+    CHECK(box("Time", "Add( in1 := T#1s, in2 := #t.ET, out => #t.PT )") ==
+          "#t.PT := T#1s + #t.ET;\n");
+}
+
 TEST_CASE("a network has a label, jumps and returns") {
     CHECK(text_of("Label( again )\n" + rung("Contact( #a ) JumpCoil( again )") +
                   rung("Contact( #b ) Return()")) ==
