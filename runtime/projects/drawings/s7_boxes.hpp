@@ -27,5 +27,6 @@ Value down_counter(Running& r);
 Value up_down_counter(Running& r);
 Value called(Running& r);
 Value other_function(Running& r);
+Value text_conversion(Running& r);
 
 }  // namespace lineshaft::projects::s7

@@ -44,6 +44,17 @@ Value Running::enable() {
     return power;
 }
 
+Value Running::told(const Value& target, std::string_view function, std::vector<Argument> given) {
+    const Value behind = wire();
+    if (!power.is_always) given.insert(given.begin(), {"EN", power});
+    given.push_back({"ENO", behind, true});
+    const Value made = call(function, given);
+    if (!target.is_empty()) return assign(target, made), behind;
+    to.append(made.text);
+    write(";\n");
+    return behind;
+}
+
 void Running::assign(const Value& target, const Value& value) {
     if (target.is_empty()) return;
     to.append(target.text);

@@ -32,6 +32,11 @@ struct Running {
     Value typed(const Value& value, std::string_view which = "SrcType") const;
     /// Power as it is before the instruction does anything.
     Value enable();
+    /// ENO is taken, and says more than EN.
+    bool tells() const { return goes_on && it.has_eno; }
+    /// `target := callee.NAME(EN := power, given, ENO => _wire1);`, and that wire. Without a target
+    /// the call alone.
+    Value told(const Value& target, std::string_view function, std::vector<Argument> given);
 
     void write(std::string_view text) { to.write(text, it.place); }
     void assign(const Value& target, const Value& value);
