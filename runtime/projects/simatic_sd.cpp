@@ -45,10 +45,16 @@ class Document {
         copied_ = end;
     }
 
-    /// `count : Int` is noted.
+    /// `count, more : Int` is noted.
     const st::Token& read_token() {
-        if (p_.is_name() && p_.next().word == Word::colon && st::is_name(p_.next(2).word))
-            variables_.know(p_.here().text, p_.next(2).text);
+        if (p_.is_name() && p_.is_declared()) {
+            listed_.emplace_back(p_.here().text);
+            const bool has_type = p_.next().word == Word::colon && st::is_name(p_.next(2).word);
+            for (const std::string& name : listed_)
+                if (has_type) variables_.know(name, p_.next(2).text);
+        } else if (!p_.is(Word::comma)) {
+            listed_.clear();
+        }
         return p_.take();
     }
 
@@ -84,6 +90,7 @@ class Document {
     st::Cursor p_;
     Excerpts made_, networks_;  ///< the latter: of the block at hand
     MadeVariables variables_;
+    std::vector<std::string> listed_ = {};  ///< names before the ':' of a declaration
     std::size_t copied_ = 0;
     int network_ = 0;
 };
