@@ -50,7 +50,7 @@ Value scaled(Running& r, std::string_view function) {
         {{"MIN", r.operand("min")}, {"VALUE", r.operand("value")}, {"MAX", r.operand("max")}});
 }
 
-/// Of those whose result may be outside its type.
+/// Whether the result may be outside its type.
 bool has_bounds(std::string_view name) {
     static constexpr std::string_view all[] = {"add", "sub", "mul", "div"};
     return std::ranges::any_of(all, st::is_called(name));
