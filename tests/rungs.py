@@ -48,7 +48,7 @@ class Block:
         """A part of SimaticML; operands by their pins, of those that it writes as `_pin`."""
         self.ids += 1
         number = self.ids
-        self.parts.append(f'<Part Name="{name}" UId="{number}">{inside}</Part>')
+        self.parts.append(f'<Part Name="{name}" UId="{number}" DisabledENO="true">{inside}</Part>')
         self.lines.setdefault(power.end, []).append(f'<NameCon UId="{number}" Name="{pin}"/>')
         for other, value in operands.items():
             if isinstance(value, Power):

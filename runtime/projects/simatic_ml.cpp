@@ -107,7 +107,10 @@ class SimaticObject {
         for (const auto& [name, word] : words)
             if (name == name_of(section) && section.child("Member")) {
                 write(fmt::format("{}\n", word), section);
-                for (const auto member : section.children("Member")) add_member(member);
+                for (const auto member : section.children("Member")) {
+                    add_member(member);
+                    variables_.know(name_of(member), file_.plain(member.attribute("Datatype")));
+                }
                 write("END_VAR\n", section);
             }
     }

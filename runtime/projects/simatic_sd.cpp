@@ -25,7 +25,7 @@ class Document {
         while (!p_.is(Word::end_of_file)) {
             if (p_.is(Word::network_))
                 read_network();
-            else if (is_end_of_block(p_.take().word))
+            else if (is_end_of_block(read_token().word))
                 finish_block();
         }
         finish_block();
@@ -43,6 +43,19 @@ class Document {
     void copy_to(std::size_t end) {
         made_.copy(text_, {copied_, end});
         copied_ = end;
+    }
+
+    /// `count, more : Int` is noted.
+    const st::Token& read_token() {
+        if (p_.is_name() && p_.is_declared()) {
+            listed_.emplace_back(p_.here().text);
+            const bool has_type = p_.next().word == Word::colon && st::is_name(p_.next(2).word);
+            for (const std::string& name : listed_)
+                if (has_type) variables_.know(name, p_.next(2).text);
+        } else if (!p_.is(Word::comma)) {
+            listed_.clear();
+        }
+        return p_.take();
     }
 
     /// Variables stand before the first of a block, and what is said of that.
@@ -77,6 +90,7 @@ class Document {
     st::Cursor p_;
     Excerpts made_, networks_;  ///< the latter: of the block at hand
     MadeVariables variables_;
+    std::vector<std::string> listed_ = {};  ///< names before the ':' of a declaration
     std::size_t copied_ = 0;
     int network_ = 0;
 };

@@ -217,7 +217,8 @@ class FlagNet {
         S7Instruction it{.name = name_of(element.part, is_negated(element, "operand")),
                          .types = types_of(element.node),
                          .formula = file_.plain(element.node.child("Equation")),
-                         .place = place};
+                         .place = place,
+                         .has_eno = plain(element.node, "DisabledENO") != "true"};
         set_callee(element, it);
         const std::vector<std::string_view> pins = power_pins(element.part);
         Value power =

@@ -7,6 +7,7 @@
 
 #include "runtime/projects/drawings/box_calls.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
 
@@ -36,6 +37,20 @@ std::string MadeVariables::make(std::string_view prefix, std::string_view type) 
 void MadeVariables::declare(std::string_view name, std::string_view type) {
     const std::string line = fmt::format("    {} : {};\n", name, type);
     if (declarations_.find(line) == declarations_.npos) declarations_ += line;
+}
+
+void MadeVariables::know(std::string_view name, std::string_view type) {
+    const auto [known, is_new] = known_.emplace(lower(name), lower(type));
+    if (!is_new && known->second != lower(type)) known->second.clear();
+}
+
+std::string MadeVariables::known_type(std::string_view variable) const {
+    if (!variable.starts_with('#')) return {};
+    variable.remove_prefix(1);
+    if (variable.starts_with('"') && variable.ends_with('"') && variable.size() > 2)
+        variable = variable.substr(1, variable.size() - 2);
+    const auto found = known_.find(lower(variable));
+    return found == known_.end() ? std::string() : found->second;
 }
 
 NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,6 +22,10 @@ class MadeVariables {
     std::string make(std::string_view prefix, std::string_view type);
     /// One of that name, once.
     void declare(std::string_view name, std::string_view type);
+    /// What the block declares itself; of a name with two types neither is known.
+    void know(std::string_view name, std::string_view type);
+    /// Of `#count`, which the block declares; empty: not known.
+    std::string known_type(std::string_view variable) const;
     /// Of what is no variable: `_action2`.
     std::string name(std::string_view prefix) { return fmt::format("{}{}", prefix, ++count_); }
     /// `_wire1 : BOOL;` and so on; empty: none.
@@ -28,6 +33,7 @@ class MadeVariables {
 
   private:
     std::string declarations_;
+    std::map<std::string, std::string, std::less<>> known_;
     int count_ = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include "runtime/projects/drawings/s7_instructions.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
 
@@ -170,6 +171,7 @@ class Network {
         S7Instruction& it = step.instruction;
         it.place = step.place;
         it.name = is_instruction ? last.text : whole.text();
+        it.has_eno = !is_instruction;
         if (!is_instruction || has_owner) it.callee = value_of(is_instruction ? owner : whole);
         read_pragmas(first, it);
         if (!accept(Word::open, "'('")) return step;
@@ -201,6 +203,8 @@ class Network {
         for (const st::Pragma& pragma : p_.pragmas) {
             if (pragma.before < first || pragma.before > p_.at) continue;
             const std::string_view all = pragma.place.text();
+            it.has_eno |= quoted_behind(all, "S7_GenerateENO") == "TRUE" ||
+                          lower(all).find("s7_generateeno := true") != all.npos;
             it.formula += quoted_behind(all, "S7_Expression");
             const std::string types = quoted_behind(all, "S7_Templates");
             it.types += pragma.before == first ? types : std::string(all);

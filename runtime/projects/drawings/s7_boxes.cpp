@@ -24,6 +24,14 @@ Value result(Running& r, const Value& value) {
     return power;
 }
 
+/// What the function gives, to where `out` is.
+Value result_of(Running& r, std::string_view function, const std::vector<Argument>& given) {
+    const auto is_target = [](const auto& pin) { return pin.is_output && !pin.value.is_empty(); };
+    const auto target = std::ranges::find_if(r.it.pins, is_target);
+    if (r.tells() && target != r.it.pins.end()) return r.told(target->value, function, given);
+    return result(r, r.call(function, given));
+}
+
 Value counted(Running& r, std::string_view sign) {
     const Value power = r.enable(), target = r.operand("operand");
     r.open(power), r.assign(target, r.binary(target, sign, r.word("1"))), r.close(power);
@@ -37,9 +45,28 @@ Value operand_of(const Running& r, std::string_view pin, std::string_view other)
 
 /// `min`, `value`, `max`, of one type: a whole number is given as it is.
 Value scaled(Running& r, std::string_view function) {
-    return result(r, r.call(function, {{"MIN", r.operand("min")},
-                                       {"VALUE", r.operand("value")},
-                                       {"MAX", r.operand("max")}}));
+    return result_of(
+        r, function,
+        {{"MIN", r.operand("min")}, {"VALUE", r.operand("value")}, {"MAX", r.operand("max")}});
+}
+
+/// Whether the result may be outside its type.
+bool has_bounds(std::string_view name) {
+    static constexpr std::string_view all[] = {"add", "sub", "mul", "div"};
+    return std::ranges::any_of(all, st::is_called(name));
+}
+
+/// The number of places alone stays what it is.
+std::vector<Argument> typed_inputs(const Running& r) {
+    std::vector<Argument> given = r.inputs();
+    for (Argument& each : given)
+        if (!same_name(each.pin, "n")) each.value = r.typed(each.value);
+    return given;
+}
+
+std::vector<Argument> positions(std::vector<Argument> given) {
+    for (Argument& each : given) each.pin.clear();
+    return given;
 }
 
 Value executed(Running& r, std::string_view input, std::string_view output) {
@@ -80,28 +107,35 @@ Value move(Running& r) {
 }
 
 Value arithmetic(Running& r) {
+    if (r.tells() && has_bounds(r.it.name))
+        return result_of(r, upper(r.it.name), positions(typed_inputs(r)));
     const std::string name = same_name(r.it.name, "and") || same_name(r.it.name, "or")
                                  ? fmt::format(" {} ", upper(r.it.name))
                                  : std::string(infix_of(r.it.name));
     Value made;
     for (const auto& pin : r.it.pins)
         if (!pin.is_output && !pin.value.is_empty())
-            made = made.is_empty() ? pin.value : r.binary(made, name, pin.value);
+            made = made.is_empty() ? r.typed(pin.value) : r.binary(made, name, r.typed(pin.value));
     return result(r, made);
 }
 
 Value negation(Running& r) {
+    const Value given = r.typed(r.operand("in"));
+    if (r.tells()) return result_of(r, "MUL", {{"", r.word("-1")}, {"", given}});
     Value made = r.word("-");
-    made.text.append(enclosed(r.operand("in"), r.it.place));
+    made.text.append(enclosed(given, r.it.place));
     return result(r, made);
 }
 
 Value inversion(Running& r) {
-    return result(r, negated(r.operand("in"), r.it.place));
+    return result(r, negated(r.typed(r.operand("in")), r.it.place));
 }
 
 Value power_of(Running& r) {
-    return result(r, r.binary(r.operand("in1"), " ** ", r.operand("in2")));
+    const Value base = r.typed(r.operand("in1"), "SrcType1"),
+                exponent = r.typed(r.operand("in2"), "SrcType2");
+    if (r.tells()) return result_of(r, "EXPT", {{"", base}, {"", exponent}});
+    return result(r, r.binary(base, " ** ", exponent));
 }
 
 Value increment(Running& r) {
@@ -115,13 +149,14 @@ Value decrement(Running& r) {
 Value conversion(Running& r) {
     const std::string from = type_of(r.it, "SrcType"), to = type_of(r.it, "DestType");
     if (from.empty() || to.empty() || same_name(from, to)) return result(r, r.operand("in"));
-    return result(r, r.call(upper(fmt::format("{}_TO_{}", from, to)), {{"", r.operand("in")}}));
+    return result_of(r, upper(fmt::format("{}_TO_{}", from, to)), {{"", r.operand("in")}});
 }
 
 Value limit(Running& r) {
-    return result(r, r.call("LIMIT", {{"MN", operand_of(r, "mn", "min")},
-                                      {"IN", r.operand("in")},
-                                      {"MX", operand_of(r, "mx", "max")}}));
+    return result_of(r, "LIMIT",
+                     {{"MN", operand_of(r, "mn", "min")},
+                      {"IN", r.operand("in")},
+                      {"MX", operand_of(r, "mx", "max")}});
 }
 
 /// SCALE of the S7-300 has other pins.
@@ -136,16 +171,19 @@ Value normalize(Running& r) {
 
 /// A function of what stands at its inputs, whose names are those of SCL where it has some.
 Value plain_function(Running& r) {
-    std::vector<Argument> given = r.inputs();
-    for (Argument& each : given) each.pin.clear();
-    return result(r, r.call(upper(r.it.name), given));
+    return result_of(r, upper(r.it.name), positions(r.inputs()));
+}
+
+/// What it gives has the type of what it takes, or that decides how it is calculated.
+Value typed_function(Running& r) {
+    return result_of(r, upper(r.it.name), positions(typed_inputs(r)));
 }
 
 Value multiplexer(Running& r) {
     std::vector<Argument> given = r.inputs();
     for (Argument& each : given)
         if (same_name(each.pin, "else")) each.pin = "INELSE";
-    return result(r, r.call("MUX", given));
+    return result_of(r, "MUX", given);
 }
 
 /// `in1 * in2`, with what stands at the pins.
@@ -159,7 +197,7 @@ Value formula(Running& r) {
         at = std::find_if_not(word, text.end(), is_part);
         const auto* pin = word == at ? nullptr : r.it.find({word, at});
         if (pin && !pin->is_output && !pin->name.empty())
-            made.text.append(enclosed(pin->value, r.it.place));
+            made.text.append(enclosed(r.typed(pin->value), r.it.place));
         else
             made.text.write({word, at}, r.it.place);
     }
@@ -188,8 +226,40 @@ Value up_down_counter(Running& r) {
 
 /// A block of the user's, or an instance of a technology block.
 Value called(Running& r) {
+    const auto* target = r.it.find("ret_val");
+    if (r.tells())
+        return r.told(target ? target->value : Value{}, "", r.pins(target ? target->name : ""));
     const Value power = r.enable();
-    r.open(power), statement(r, r.it.find("ret_val"), ""), r.close(power);
+    r.open(power), statement(r, target, ""), r.close(power);
+    return power;
+}
+
+/// How many characters an integer has behind S_CONV, but in SCL: 0: of that nothing is known.
+int width_of(std::string_view type) {
+    static constexpr std::pair<std::string_view, int> widths[] = {
+        {"sint", 4}, {"usint", 4}, {"int", 6}, {"uint", 6}, {"dint", 11}, {"udint", 11}};
+    for (const auto& [name, width] : widths)
+        if (same_name(name, type)) return width;
+    return 0;
+}
+
+/// A number goes to the right end of its characters, and no sign before what is not negative.
+Value text_conversion(Running& r) {
+    std::string type = type_of(r.it, "src_type");
+    if (type.empty()) type = r.variables.known_type(r.it.value("in").text.text());
+    const int width = width_of(type);
+    const bool is_text = same_name(type_of(r.it, "dest_type"), "string");
+    if (width == 0 || !is_text) return other_function(r);
+    const std::vector<Argument> given{
+        {"IN", r.operand("in")}, {"SIZE", r.word(std::to_string(width))},
+        {"PREC", r.word("0")},   {"FORMAT", r.word("0")},
+        {"P", r.word("1")},      {"OUT", r.operand("out"), true}};
+    if (r.tells()) return r.told({}, "VAL_STRG", given);
+    const Value power = r.enable();
+    r.open(power);
+    r.to.append(r.call("VAL_STRG", given).text);
+    r.write(";\n");
+    r.close(power);
     return power;
 }
 
@@ -197,6 +267,9 @@ Value called(Running& r) {
 Value other_function(Running& r) {
     const auto* target = r.it.find("ret_val");
     if (!target && !writes_to_out(r.it.name)) target = r.it.find("out");
+    if (r.tells())
+        return r.told(target ? target->value : Value{}, upper(r.it.name),
+                      r.pins(target ? target->name : ""));
     const Value power = r.enable();
     r.open(power), statement(r, target, upper(r.it.name)), r.close(power);
     return power;

@@ -18,6 +18,7 @@ Value limit(Running& r);
 Value scale(Running& r);
 Value normalize(Running& r);
 Value plain_function(Running& r);
+Value typed_function(Running& r);
 Value multiplexer(Running& r);
 Value formula(Running& r);
 Value timer(Running& r);
@@ -26,5 +27,6 @@ Value down_counter(Running& r);
 Value up_down_counter(Running& r);
 Value called(Running& r);
 Value other_function(Running& r);
+Value text_conversion(Running& r);
 
 }  // namespace lineshaft::projects::s7

@@ -205,10 +205,17 @@ Value inverted_jump_coil(Running& r) {
     return jump(r, r.not_(r.enable()));
 }
 
-Value return_coil(Running& r) {
+Value returned(Running& r, std::string_view before) {
     const Value power = r.enable();
-    r.open(power), r.write("RETURN;\n"), r.close(power);
+    r.open(power), r.write(fmt::format("{}RETURN;\n", before)), r.close(power);
     return power;
+}
+Value return_coil(Running& r) {
+    return returned(r, "");
+}
+/// The block's ENO is FALSE.
+Value failed_return_coil(Running& r) {
+    return returned(r, "ENO := FALSE;\n");
 }
 
 /// Of two that are TRUE at once the one whose input has a 1 wins.
@@ -274,7 +281,8 @@ constexpr Row rows[] = {
     {timer_preset, " pt_coil "},
     {jump_coil, " jumpcoil "},
     {inverted_jump_coil, " i_jumpcoil "},
-    {return_coil, " return returntrue returnfalse returncoil "},
+    {return_coil, " return returntrue returncoil "},
+    {failed_return_coil, " returnfalse "},
     {reset_set, " s_rs rs "},
     {set_reset, " s_sr sr "},
     {move, " move s_move "},
@@ -290,9 +298,11 @@ constexpr Row rows[] = {
     {normalize, " normalize norm_x "},
     {multiplexer, " mux "},
     {formula, " calculate calc "},
-    {plain_function,
-     " abs min max sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap sel "
-     "shl shr rol ror "},
+    {plain_function, " min max sel "},
+    {typed_function,
+     " abs sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap shl shr rol "
+     "ror "},
+    {text_conversion, " s_conv "},
     {timer, " tp ton tof tonr "},
     {up_counter, " ctu "},
     {down_counter, " ctd "},

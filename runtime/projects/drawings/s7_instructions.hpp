@@ -22,6 +22,7 @@ struct S7Instruction {
     std::string types = {};      ///< `SrcType := Int`, of `S7_Templates`
     std::string formula = {};    ///< `in1 * in2`, of `S7_Expression`
     Mark place = {};
+    bool has_eno = false;  ///< "Generate ENO": it says whether the box failed
 
     const Pin* find(std::string_view pin) const;
     /// Of a pin, or of the operand without a name; empty: nothing is there.
@@ -31,7 +32,8 @@ struct S7Instruction {
 /// Instructions as statements in SCL.
 ///
 /// Power is a BOOL. What an instruction does is done where power is at it, and goes on behind it:
-/// ENO is EN. Timers, counters and what finds edges are executed in each scan.
+/// ENO is EN, or where it is generated what the function says. Timers, counters and what finds
+/// edges are executed in each scan.
 class S7Instructions {
   public:
     S7Instructions(Diagnostics& out, MadeVariables& variables) : out_(out), variables_(variables) {}

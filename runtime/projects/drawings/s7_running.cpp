@@ -19,9 +19,40 @@ Value Running::operand(std::string_view pin) const {
     return given;
 }
 
+Value Running::typed(const Value& value, std::string_view which) const {
+    if (value.is_empty()) return value;
+    static constexpr std::string_view numbers[] = {"SInt",  "USInt", "Int",   "UInt", "DInt",
+                                                   "UDInt", "LInt",  "ULInt", "Real", "LReal",
+                                                   "Byte",  "Word",  "DWord", "LWord"};
+    std::string type = type_of(it, which);
+    if (type.empty()) type = type_of(it, "value_type");
+    const std::string_view text = value.text.text();
+    const std::string known = value.type.empty() ? variables.known_type(text) : value.type;
+    const bool is_literal = std::string_view("#\"%_(").find(text.front()) == text.npos;
+    if (is_literal || st::same_name(known, type) ||
+        !std::ranges::any_of(numbers, st::is_called(type)))
+        return value;
+    Value made = word(fmt::format("TO_{}(", upper(type)));
+    made.text.append(value.text);
+    made.text.write(")", it.place);
+    made.form = Value::Form::atom;
+    return made;
+}
+
 Value Running::enable() {
     if (goes_on) power = all.fixed(to, std::move(power), it.place);
     return power;
+}
+
+Value Running::told(const Value& target, std::string_view function, std::vector<Argument> given) {
+    const Value behind = wire();
+    if (!power.is_always) given.insert(given.begin(), {"EN", power});
+    given.push_back({"ENO", behind, true});
+    const Value made = call(function, given);
+    if (!target.is_empty()) return assign(target, made), behind;
+    to.append(made.text);
+    write(";\n");
+    return behind;
 }
 
 void Running::assign(const Value& target, const Value& value) {

@@ -27,8 +27,16 @@ struct Running {
 
     /// Of a pin at which something must be; else that is told.
     Value operand(std::string_view pin) const;
+    /// As a value of the type that the box calculates in, where that is a number or a
+    /// bit string. A literal takes it from what stands beside it.
+    Value typed(const Value& value, std::string_view which = "SrcType") const;
     /// Power as it is before the instruction does anything.
     Value enable();
+    /// ENO is taken, and says more than EN.
+    bool tells() const { return goes_on && it.has_eno; }
+    /// `target := callee.NAME(EN := power, given, ENO => _wire1);`, and that wire. Without a target
+    /// the call alone.
+    Value told(const Value& target, std::string_view function, std::vector<Argument> given);
 
     void write(std::string_view text) { to.write(text, it.place); }
     void assign(const Value& target, const Value& value);

@@ -17,6 +17,15 @@ Token named(const Expression& like, std::string_view text) {
     return {.word = Word::name, .place = like.place, .text = text};
 }
 
+/// ENO of the call, taken out of its arguments.
+std::vector<Argument> take_eno(Checking& c, Expression*& e) {
+    std::vector<Argument> eno, others;
+    for (const Argument& each : e->arguments)
+        (same_name(each.name.text, "eno") ? eno : others).push_back(each);
+    if (!eno.empty()) e = make_with(c, *e, std::move(others));
+    return eno;
+}
+
 /// What the call gives for `names`, in their order, by name or by place; empty, and told, where it
 /// gives something else.
 std::vector<Expression*> given_for(Checking& c, const Expression& call,
@@ -73,6 +82,7 @@ bool take_bytes(Checking& c, Expression*& e, const Routine& called) {
     const bool is_bit = function.ends_with("_BOOL");
     if (is_bit) names.emplace_back("bitOffset");
     if (writes) names.emplace_back("value");
+    const std::vector<Argument> eno = take_eno(c, e);
     std::vector<Expression*> given = given_for(c, *e, names);
     if (given.empty()) return false;
     const auto area = area_of(c, given[0]);
@@ -98,6 +108,7 @@ bool take_bytes(Checking& c, Expression*& e, const Routine& called) {
     if (is_bit) arguments.push_back({.name = named(*e, "bitOffset"), .value = given[3]});
     if (is_bit && writes) arguments.push_back({.name = named(*e, "before"), .value = byte_at(0)});
     if (writes) arguments.push_back({.name = named(*e, "value"), .value = given.back()});
+    arguments.insert(arguments.end(), eno.begin(), eno.end());
     e = make_with(c, *e, std::move(arguments));
     return true;
 }

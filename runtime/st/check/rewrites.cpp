@@ -43,13 +43,17 @@ Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     std::ranges::copy_if(call.arguments, std::back_inserter(others), [&](const Argument& a) {
         return !same_name(a.name.text, "en") && (has_eno || !same_name(a.name.text, "eno"));
     });
-    const auto eno_is = [&](bool value) {
-        return make_assignment(c, s.place, enabled->value, make_boolean(c, call, value));
+    const auto eno_is = [&](Expression* value) {
+        return make_assignment(c, s.place, enabled->value, value);
     };
     Expression* condition = enable ? enable->value : make_boolean(c, call, true);
-    Block then = {make_with(c, s, make_with(c, call, std::move(others)))}, otherwise;
-    if (enabled && !has_eno) then.push_back(eno_is(true));
-    if (enabled) otherwise.push_back(eno_is(false));
+    Block then, otherwise;
+    const bool is_told = enabled && !has_eno;
+    Expression* succeeds = is_told ? enable_output(c, s, others, then) : nullptr;
+    if (succeeds) then.push_back(eno_is(succeeds));
+    then.push_back(make_with(c, s, make_with(c, call, std::move(others))));
+    if (is_told && !succeeds) then.push_back(eno_is(make_boolean(c, call, true)));
+    if (enabled) otherwise.push_back(eno_is(make_boolean(c, call, false)));
     assign_initial_value(c, s, otherwise);
     return make_if(c, s.place, condition, std::move(then), std::move(otherwise));
 }
@@ -134,22 +138,25 @@ bool rewrite(Checking& c, Statement*& s) {
     Expression& call = *s->value;
     const Expression& callee = *call.operands[0];
     const Routine* routine = nullptr;
+    const StandardFunction* special = nullptr;
     if (callee.kind == E::name) {
         const Variable* variable = find_variable(c, callee.token);
         routine = c.find_routine(callee.token);
         if (variable && variable->type) routine = variable->type->routine;
         const StandardFunction* standard = find_standard_function(callee.token.text);
         const bool is_known = variable || routine || callee.token.quoted || callee.token.local;
-        if (s->kind == S::call && standard && !is_known && standard->typing == Typing::statement) {
-            call.standard = standard;
-            check_special(c, s);
-            return true;
-        }
+        if (s->kind == S::call && standard && !is_known && standard->typing == Typing::statement)
+            special = standard;
     }
     const auto is_switched = [&](std::string_view name) {
         return find_argument(call, name) && !(routine && routine->names.contains(name));
     };
     const bool standard_eno = is_switched("eno") && !routine;
+    if (special && !is_switched("en") && !standard_eno) {
+        call.standard = special;
+        check_special(c, s);
+        return true;
+    }
     if (!is_switched("en") && !standard_eno) {
         const bool is_siemens = s->place.dialect().vendor == Vendor::siemens;
         if (is_siemens && !routine && callee.kind == E::name &&

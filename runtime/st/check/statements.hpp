@@ -20,6 +20,13 @@ bool rewrite(Checking& c, Statement*& s);
 /// Siemens' ENO, a flag of each call that begins as TRUE: a caller may take it.
 Variable& eno_of(Checking& c, Routine& routine);
 
+// enable_outputs.cpp
+
+/// What ENO of the statement's standard function is in Siemens' languages, before it is executed:
+/// `mn <= mx` of LIMIT. Null: it cannot fail. Arguments that are calls are kept in `before`.
+Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>& given,
+                          Block& before);
+
 /// What runs in front of its body: `go.R_EDGE(CLK := go);`.
 Block edge_calls(Checking& c, Routine& routine);
 

@@ -105,6 +105,41 @@ TEST_CASE("boxes do something where power is at them, and it goes on") {
           "STRG_VAL(in := '5', format := 16#0, p := 1, out => #y);\n");
 }
 
+TEST_CASE("a box calculates in the type that its template says") {
+    const auto box = [](const std::string& type, const std::string& call) {
+        return text_of(rung("{ S7_Templates := \"SrcType := " + type + "\" }\n" + call));
+    };
+    CHECK(box("DInt", "Mul( in1 := #x, in2 := 100, out => #x )") == "#x := TO_DINT(#x) * 100;\n");
+    CHECK(box("Int", "Mul( in1 := #x, in2 := #y, out => #z )") == "#z := #x * #y;\n");
+    CHECK(box("Real", "Neg( in := #x, out => #r )") == "#r := -TO_REAL(#x);\n");
+    CHECK(box("DWord", "Rol( in := #x, n := #y, out => #z )") == "#z := ROL(TO_DWORD(#x), #y);\n");
+    CHECK(box("Time", "Add( in1 := T#1s, in2 := #t.ET, out => #t.PT )") ==
+          "#t.PT := T#1s + #t.ET;\n");
+}
+
+TEST_CASE("ENO is that of the block that is called, or of a box that generates it") {
+    CHECK(text_of(rung("Contact( #a ) \"Twice\"( value := #x, Ret_Val => #y ) Coil( #b )")) ==
+          "#y := \"Twice\"(EN := #a, value := #x, ENO => _wire1);\n#b := _wire1;\n");
+    CHECK(text_of(rung("#list[2]( in := #b, out => #c ) Coil( #d )")) ==
+          "#list[2](in := #b, out => #c, ENO => _wire1);\n#d := _wire1;\n");
+    const auto box = [](const std::string& type, const std::string& call) {
+        return text_of(rung("Contact( #a ) { S7_Templates := \"" + type +
+                            "\"; S7_GenerateENO := \"TRUE\" }\n" + call + " Coil( #b )"));
+    };
+    CHECK(box("SrcType := Int", "Sub( in1 := #x, in2 := #y, out => #z )") ==
+          "#z := SUB(EN := #a, #x, #y, ENO => _wire1);\n#b := _wire1;\n");
+    CHECK(box("SrcType := Int", "Neg( in := #x, out => #z )") ==
+          "#z := MUL(EN := #a, -1, #x, ENO => _wire1);\n#b := _wire1;\n");
+    CHECK(box("[SrcType := Real, DestType := Int]", "Convert( in := #r, out => #x )") ==
+          "#x := REAL_TO_INT(EN := #a, #r, ENO => _wire1);\n#b := _wire1;\n");
+    CHECK(box("value_type := Int", "Limit( min := 0, in := #x, max := 9, out => #y )") ==
+          "#y := LIMIT(EN := #a, MN := 0, IN := #x, MX := 9, ENO => _wire1);\n#b := _wire1;\n");
+    CHECK(box("Card := 1", "Move( in := 3, out1 => #x )") ==
+          "_wire1 := #a;\nIF _wire1 THEN\n#x := 3;\nEND_IF\n#b := _wire1;\n");
+    CHECK(text_of(rung("Contact( #a ) ReturnFalse()")) ==
+          "IF #a THEN\nENO := FALSE;\nRETURN;\nEND_IF\n");
+}
+
 TEST_CASE("a network has a label, jumps and returns") {
     CHECK(text_of("Label( again )\n" + rung("Contact( #a ) JumpCoil( again )") +
                   rung("Contact( #b ) Return()")) ==
