@@ -48,7 +48,11 @@ Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     };
     Expression* condition = enable ? enable->value : make_boolean(c, call, true);
     Block then = {make_with(c, s, make_with(c, call, std::move(others)))}, otherwise;
-    if (enabled && !has_eno) then.push_back(eno_is(true));
+    const bool is_s7 = s.place.dialect().vendor == Vendor::siemens && s.kind == S::assign;
+    if (enabled && !has_eno && is_s7)
+        then = assign_and_tell(c, then[0], enabled->value);
+    else if (enabled && !has_eno)
+        then.push_back(eno_is(true));
     if (enabled) otherwise.push_back(eno_is(false));
     assign_initial_value(c, s, otherwise);
     return make_if(c, s.place, condition, std::move(then), std::move(otherwise));

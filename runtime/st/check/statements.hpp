@@ -26,6 +26,12 @@ Block edge_calls(Checking& c, Routine& routine);
 /// `go` in a body is `go.R_EDGE.Q`.
 const Type* use_edge(Checking& c, Expression*& e, Variable& input);
 
+// enable_outputs.cpp
+
+/// `y := SCALE_X(...)` of SCL, which is not checked, and what its ENO tells: FALSE of a real number
+/// that is none, or beyond the type of `y`, and where MIN is not below MAX.
+Block assign_and_tell(Checking& c, Statement* s, Expression* told);
+
 // block_moves.cpp
 
 /// MOVE_BLK, UMOVE_BLK, FILL_BLK and UFILL_BLK of Siemens as what they do with the elements of two

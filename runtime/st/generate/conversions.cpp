@@ -24,6 +24,15 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     return look_up(w, slot, places, least);
 }
 
+/// In SCL what is beyond the type leaves its lowest bits.
+Slot nearest(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    const auto* source = w.place.source;
+    const bool is_s7 = source && source->dialect.vendor == Vendor::siemens && !source->is_prelude();
+    if (!is_s7) return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    if (to.bits == 64) return w.emit(Op::lowest_bits, wanted, slot);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::lowest_bits, none, slot));
+}
+
 Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,
                   Slot wanted) {
     if (from.is_real() && to.is_real())
@@ -40,7 +49,7 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     if (to.kind == Kind::bits && from.bits == to.bits)
         return to.bits == 32 ? w.emit(Op::real_bits, wanted, slot) : slot;
     if (truncates) slot = w.emit(Op::truncate, none, slot);
-    return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    return nearest(w, slot, to, wanted);
 }
 
 /// Of a DT its DATE and its TOD; all others keep their ns.
