@@ -509,8 +509,12 @@ BEGIN
    "Data".fast += BOOL_TO_INT("Clock_10Hz");
    "Data".none += BOOL_TO_INT("Clock_2Hz") + BOOL_TO_INT("Clock_Hz");
 END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK "OB30"
+BEGIN
+   "Data".early += BOOL_TO_INT("AlwaysTRUE");
+END_ORGANIZATION_BLOCK
 DATA_BLOCK "Data"
-STRUCT first, always, high, slow, fast, none : Int; END_STRUCT;
+STRUCT first, always, high, slow, fast, none, early : Int; END_STRUCT;
 BEGIN
 END_DATA_BLOCK
 """)
@@ -520,7 +524,7 @@ END_DATA_BLOCK
                  "type: Clock memory of Default tag table, task: clock_memory}\n", "type: Clock memory of Others, task: clock_memory}\n"):
         assert line in text, (line, text)
     write("memory.yaml", text.replace("run: {for: 1 s}", "run: {for: 1.595 s}") + "expect:\n" + "".join(f"  - {{at: end, Data.{name}: {value}}}\n"
-          for name, value in (("first", 1), ("always", 160), ("high", 60), ("slow", 80), ("fast", 80), ("none", 0))))
+          for name, value in (("first", 1), ("always", 160), ("early", 16), ("high", 60), ("slow", 80), ("fast", 80), ("none", 0))))
     run("run", "memory.yaml", "--quiet")
     (work / "Memory/Main.scl").write_text("FUNCTION_BLOCK Alone\nBEGIN\nEND_FUNCTION_BLOCK\n")
     assert "has no PROGRAM that a task could run" in run("new", "memory_alone", "--from", "Memory", code=2)

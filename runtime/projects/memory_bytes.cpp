@@ -45,7 +45,10 @@ void MemoryBytes::add(std::string_view name, std::string_view address) {
                                clock->period, clock->period / 2);
     if (name == "FirstScan" && is_bit(address, '0'))
         system_ += "    \"FirstScan\" := NOT #scanned;\n    #scanned := TRUE;\n";
-    if (name == "AlwaysTRUE" && is_bit(address, '2')) system_ += "    \"AlwaysTRUE\" := TRUE;\n";
+}
+
+bool MemoryBytes::is_always_true(std::string_view name, std::string_view address) {
+    return name == "AlwaysTRUE" && is_bit(address, '2');
 }
 
 std::string MemoryBytes::add_to(Project& project, std::string_view table, const Mark& mark) const {

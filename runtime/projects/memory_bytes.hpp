@@ -18,6 +18,9 @@ class MemoryBytes {
     /// Notes the PROGRAMs, and gives them in SCL: `Clock memory of Default tag table`.
     std::string add_to(Project& project, std::string_view table, const Mark& mark) const;
 
+    /// Such a bit begins as TRUE.
+    static bool is_always_true(std::string_view name, std::string_view address);
+
   private:
     std::string clocks_, system_;  ///< statements
 };

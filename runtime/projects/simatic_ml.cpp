@@ -253,6 +253,11 @@ class SimaticObject {
                 write(" := ", value);
                 file_.copy(text_, value);
             }
+            const auto plain = [&](const char* what) {
+                return file_.plain(attributes(tag).child(what));
+            };
+            if (MemoryBytes::is_always_true(plain("Name"), plain("LogicalAddress")))
+                write(" := TRUE", tag);
             write(";\n", tag);
         }
         write("END_VAR\n", list);
