@@ -502,6 +502,45 @@ def check_organization_blocks():
         assert line in text, (line, text)
 
 
+def check_memory_bytes():
+    """Siemens: FirstScan for one scan of OB1, AlwaysTRUE, clocks with halves of the same length; a tag of another name or bit is none."""
+    def tags(file, *those):
+        write(f"Memory/{file}.xml", f'<Document><SW.Tags.PlcTagTable ID="0"><AttributeList><Name>{file}</Name></AttributeList><ObjectList>' + "".join(
+            f'<SW.Tags.PlcTag ID="{i}" CompositionName="Tags"><AttributeList><DataTypeName>Bool</DataTypeName><LogicalAddress>%M{address}</LogicalAddress>'
+            f"<Name>{name}</Name></AttributeList></SW.Tags.PlcTag>" for i, (name, address) in enumerate(those)) +
+            "</ObjectList></SW.Tags.PlcTagTable></Document>\n")
+    tags("Default tag table", ("Clock_1Hz", "0.5"), ("Clock_0.625Hz", "0.6"), ("Clock_2Hz", "0.4"), ("FirstScan", "1.0"), ("AlwaysTRUE", "1.2"), ("Clock_Hz", "0.0"))
+    tags("Others", ("Clock_10Hz", "20.0"))
+    write("Memory/Main.scl", """ORGANIZATION_BLOCK "Main"
+BEGIN
+   "Data".first += BOOL_TO_INT("FirstScan");
+   "Data".always += BOOL_TO_INT("AlwaysTRUE");
+   "Data".high += BOOL_TO_INT("Clock_1Hz");
+   "Data".slow += BOOL_TO_INT("Clock_0.625Hz");
+   "Data".fast += BOOL_TO_INT("Clock_10Hz");
+   "Data".none += BOOL_TO_INT("Clock_2Hz") + BOOL_TO_INT("Clock_Hz");
+END_ORGANIZATION_BLOCK
+ORGANIZATION_BLOCK "OB30"
+BEGIN
+   "Data".early += BOOL_TO_INT("AlwaysTRUE");
+END_ORGANIZATION_BLOCK
+DATA_BLOCK "Data"
+STRUCT first, always, high, slow, fast, none, early : Int; END_STRUCT;
+BEGIN
+END_DATA_BLOCK
+""")
+    run("new", "memory", "--from", "Memory")
+    text = (work / "memory.yaml").read_text()
+    for line in ("  clock_memory: {every: 50 ms, priority: 17}\n", "type: System memory of Default tag table, task: main}\n  Main: {type: Main, task: main}\n",
+                 "type: Clock memory of Default tag table, task: clock_memory}\n", "type: Clock memory of Others, task: clock_memory}\n"):
+        assert line in text, (line, text)
+    write("memory.yaml", text.replace("run: {for: 1 s}", "run: {for: 1.595 s}") + "expect:\n" + "".join(f"  - {{at: end, Data.{name}: {value}}}\n"
+          for name, value in (("first", 1), ("always", 160), ("early", 16), ("high", 60), ("slow", 80), ("fast", 80), ("none", 0))))
+    run("run", "memory.yaml", "--quiet")
+    (work / "Memory/Main.scl").write_text("FUNCTION_BLOCK Alone\nBEGIN\nEND_FUNCTION_BLOCK\n")
+    assert "has no PROGRAM that a task could run" in run("new", "memory_alone", "--from", "Memory", code=2)
+
+
 def check_softmotion():
     """An axis of the device tree is one wherever it is named; a name that no pin of an axis is given is none."""
     write("soft/A_panel.st", "PROGRAM A_panel\nVAR place : LREAL; stands : BOOL; END_VAR\nplace := Lift.fActPosition;\n"
@@ -997,6 +1036,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_headers()
     check_mapp()
     check_organization_blocks()
+    check_memory_bytes()
     check_softmotion()
     check_local_types()
     check_awl()

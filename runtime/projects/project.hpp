@@ -34,13 +34,15 @@ struct ProjectTask {
     std::vector<TaskProgram> programs = {};
 };
 
-/// Siemens' block that the operating system calls.
+/// Siemens' block that the operating system calls, or what stands for what that does itself.
 struct OrganizationBlock {
     enum class Start : std::uint8_t {
         cycle,             ///< again and again, as OB1
         startup,           ///< once, before all others, as OB100
         cyclic_interrupt,  ///< in an interval of its own, as OB30
         event,             ///< an interrupt or a fault
+        clock_memory,      ///< MemoryBytes, every 50 ms
+        system_memory,     ///< MemoryBytes, in front of OB1
     };
 
     Name name;

@@ -9,6 +9,7 @@
 
 #include "runtime/projects/drawings/flag_nets.hpp"
 #include "runtime/projects/drawings/simatic_access.hpp"
+#include "runtime/projects/memory_bytes.hpp"
 #include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
@@ -32,6 +33,16 @@ bool is_structure(std::string_view type) {
 class SimaticObject {
   public:
     explicit SimaticObject(const XmlFile& file) : file_(file), access_(file) {}
+
+    /// What a tag table has of them.
+    void add_memory_bytes(pugi::xml_node table, Project& project) {
+        MemoryBytes bytes;
+        for (const auto tag : table.child("ObjectList").children("SW.Tags.PlcTag"))
+            bytes.add(file_.plain(attributes(tag).child("Name")),
+                      file_.plain(attributes(tag).child("LogicalAddress")));
+        const std::string name = file_.plain(attributes(table).child("Name"));
+        write(bytes.add_to(project, name, place(table)), table);
+    }
 
     void add(pugi::xml_node object) {
         const std::string_view kind = kind_of(object);
@@ -245,6 +256,11 @@ class SimaticObject {
                 write(" := ", value);
                 file_.copy(text_, value);
             }
+            const auto plain = [&](const char* what) {
+                return file_.plain(attributes(tag).child(what));
+            };
+            if (MemoryBytes::is_always_true(plain("Name"), plain("LogicalAddress")))
+                write(" := TRUE", tag);
             write(";\n", tag);
         }
         write("END_VAR\n", list);
@@ -319,6 +335,7 @@ void read_simatic_ml(const Reading& to, const std::string& path, const Mark& whe
         if (!is_read(object)) continue;
         SimaticObject made(*file);
         made.add(object);
+        if (kind_of(object) == "PlcTagTable") made.add_memory_bytes(object, to.project);
         if (kind_of(object) == "OB")
             to.project.organization_blocks.push_back(organization_block_of(*file, object));
         to.project.add(

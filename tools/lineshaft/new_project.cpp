@@ -1,6 +1,7 @@
 #include "tools/lineshaft/new_project.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -46,8 +47,14 @@ std::string time_text(std::int64_t ns) {
     return ns % 1000 == 0 ? fmt::format("{} us", ns / 1000) : fmt::format("{} ns", ns);
 }
 
+bool is_memory(const projects::OrganizationBlock& block) {
+    using enum projects::OrganizationBlock::Start;
+    return block.start == clock_memory || block.start == system_memory;
+}
+
 /// One for OB1 and its like, one for each cyclic interrupt, with the interval that TIA Portal gives
-/// a new one and the priority of its number, one for what runs at the start.
+/// a new one and the priority of its number, one for what runs at the start, one for the bits that
+/// are clocks, whose half periods are whole times of 50 ms.
 void add_organization_blocks(const projects::Project& project, std::set<std::string>& names,
                              std::vector<NewTask>& tasks) {
     using enum projects::OrganizationBlock::Start;
@@ -58,13 +65,16 @@ void add_organization_blocks(const projects::Project& project, std::set<std::str
         tasks.push_back(task);
         tasks.back().name = name;
     };
-    const auto add_all = [&](auto start, const char* name, const NewTask& task) {
+    if (std::ranges::all_of(blocks, is_memory)) return;
+    const auto add_all = [&](std::initializer_list<projects::OrganizationBlock::Start> starts,
+                             const char* name, const NewTask& task) {
         NewTask made = task;
-        for (const auto& block : blocks)
-            if (block.start == start) made.programs.push_back({block.name});
+        for (const auto start : starts)
+            for (const auto& block : blocks)
+                if (block.start == start) made.programs.push_back({block.name});
         if (!made.programs.empty()) add(name, made);
     };
-    add_all(cycle, "main", {{}, 10'000'000, 1, {}});
+    add_all({system_memory, cycle}, "main", {{}, 10'000'000, 1, {}});
     for (const auto& block : blocks)
         if (block.start == cyclic_interrupt)
             add(plain_name(block.name.text), {{},
@@ -72,7 +82,8 @@ void add_organization_blocks(const projects::Project& project, std::set<std::str
                                               8 + std::clamp<std::int64_t>(block.number - 30, 0, 8),
                                               {{block.name}},
                                               true});
-    add_all(startup, "startup", {{}, 0, 0, {}});
+    add_all({startup}, "startup", {{}, 0, 0, {}});
+    add_all({clock_memory}, "clock_memory", {{}, 50'000'000, 17, {}});
 }
 
 /// Those that are cyclic. A project's smallest priority is the most urgent, here the largest.
@@ -377,6 +388,9 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);
     std::vector<NewBlock> programs = programs_of(*library, tasks);
+    const auto& organization_blocks = project.organization_blocks;
+    const bool has_memory = std::ranges::any_of(organization_blocks, is_memory);
+    if (has_memory && std::ranges::all_of(organization_blocks, is_memory)) programs.clear();
     if (programs.empty()) {
         out.add(code::entry_is_missing, {},
                 fmt::format("'{}' has no PROGRAM that a task could run", path),

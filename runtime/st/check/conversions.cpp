@@ -324,7 +324,8 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     if (from.is_real() || to.kind == Kind::enumeration) return false;
     const bool is_cut = to.kind == Kind::time && !to.counts_ns && from.counts_ns &&
                         e->place.dialect().times_count_ms;
-    const Wide given = is_cut ? in_whole_ms(e->constant.integer) : e->constant.integer;
+    const Wide given =
+        is_cut ? in_whole_ms(e->constant.integer, e->place.dialect()) : e->constant.integer;
     const bool is_odd = given % 2 != 0, takes_lowest = e->place.dialect().vendor == Vendor::siemens;
     const Wide value = to.kind == Kind::boolean ? Wide{takes_lowest ? is_odd : given != 0}
                                                 : wrapped(to.plain(), given);
@@ -445,9 +446,10 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     return convert(c, e, to);
 }
 
-Wide in_whole_ms(Wide nanoseconds) {
-    constexpr Wide ms = 1'000'000, most = Wide{1} << 32;
-    return (nanoseconds / ms % most + most) % most * ms;
+Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect) {
+    constexpr Wide ms = 1'000'000;
+    const bool has_sign = dialect.vendor == Vendor::siemens;
+    return wrapped(integer_type(32, has_sign), nanoseconds / ms) * ms;
 }
 
 const Type* convert(Checking& c, Expression*& e, const Type& to) {

@@ -22,8 +22,8 @@ void warn_of_loss(Checking& c, const Expression& e, const Type& to);
 /// Gives that type, which is never null.
 const Type* convert(Checking& c, Expression*& e, const Type& to);
 
-/// What is kept of a TIME that is whole ms below 2^32.
-Wide in_whole_ms(Wide nanoseconds);
+/// What is kept of a TIME that is whole ms in 32 bits, in SCL with a sign.
+Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect);
 
 /// `16#FF` has that of the bit string that is wanted.
 void take_width(Checking& c, Expression*& e, const Type* expected);

@@ -71,7 +71,13 @@ const Type* check_time(Checking& c, Expression*& slot) {
                       "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
     e.constant.integer = wrapped(lint_type, *value);  // CODESYS reckons its LTIME without a sign
     if (!dialect.times_count_ms) return &time_type;
-    if (!is_long) e.constant.integer = in_whole_ms(*value);
+    const Wide kept = is_long ? *value : in_whole_ms(*value, dialect);
+    if (dialect.vendor == Vendor::siemens && !is_long && kept != *value)
+        return c.fail(code::value_out_of_range, e.place,
+                      fmt::format("'{}' is not a TIME", e.place.text()),
+                      "that is whole ms from T#-24d20h31m23s648ms to T#24d20h31m23s647ms; write "
+                      "LT#...");
+    if (!is_long) e.constant.integer = kept;
     return is_long ? &ltime_type : &time_type;
 }
 

@@ -6,7 +6,8 @@ namespace lineshaft::st {
 
 namespace {
 
-/// What is reckoned of TIMEs and numbers; in CODESYS a TIME is whole ms again, an LTIME in ns.
+/// What is reckoned of TIMEs and numbers; in CODESYS and SCL a TIME is whole ms again, an LTIME in
+/// ns.
 const Type* become_time(Checking& c, Expression*& e, bool is_long) {
     const bool counts_ms = e->place.dialect().times_count_ms;
     e->type = counts_ms ? &ltime_type : &time_type;

@@ -98,6 +98,14 @@ std::uint64_t whole(double value) {
     return wrap<T>(static_cast<std::uint64_t>(static_cast<T>(value)));
 }
 
+/// The lowest 64 bits of the nearest whole number; of infinity and of what is no number 0.
+inline std::uint64_t lowest_bits(double value) {
+    value = std::nearbyint(value);
+    if (fits<std::int64_t>(value)) return whole<std::int64_t>(value);
+    if (!std::isfinite(value)) return 0;
+    return static_cast<std::uint64_t>(value - std::floor(value * 0x1p-64) * 0x1p64);
+}
+
 template <int bits>
 std::uint64_t shift_left(std::uint64_t value, std::uint64_t places) {
     return places >= bits ? 0 : value << places & mask(bits);

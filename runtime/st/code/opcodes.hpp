@@ -168,6 +168,7 @@
     OP(truncate, real, "wr--", put(a, std::trunc(R(b))))                                             \
     OP(round_away, real, "wr--", put(a, std::round(R(b))))                                           \
     OP(round, real, "wr--", put(a, std::nearbyint(R(b))))                                            \
+    OP(lowest_bits, real, "wr--", put(a, lowest_bits(R(b))))                                         \
     OP(narrow, real, "wr--", put(a, narrow(R(b))))                                                   \
     OP(real_from_signed, real, "wr--", put(a, double{static_cast<float>(I(b))}))                     \
     OP(real_from_unsigned, real, "wr--", put(a, double{static_cast<float>(U(b))}))                   \

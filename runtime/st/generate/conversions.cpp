@@ -24,6 +24,15 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     return look_up(w, slot, places, least);
 }
 
+/// In SCL what is beyond the type leaves its lowest bits.
+Slot nearest(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    const auto* source = w.place.source;
+    const bool is_s7 = source && source->dialect.vendor == Vendor::siemens && !source->is_prelude();
+    if (!is_s7) return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    if (to.bits == 64) return w.emit(Op::lowest_bits, wanted, slot);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::lowest_bits, none, slot));
+}
+
 Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,
                   Slot wanted) {
     if (from.is_real() && to.is_real())
@@ -40,7 +49,7 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     if (to.kind == Kind::bits && from.bits == to.bits)
         return to.bits == 32 ? w.emit(Op::real_bits, wanted, slot) : slot;
     if (truncates) slot = w.emit(Op::truncate, none, slot);
-    return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    return nearest(w, slot, to, wanted);
 }
 
 /// Of a DT its DATE and its TOD; all others keep their ns.
@@ -140,22 +149,23 @@ bool is_counted(const Expression& e) {
            (number.is_integer() || number.is_bits());
 }
 
-/// Made of something else in CODESYS, whose TIME and TOD are whole ms, DT whole seconds, and DATE
-/// whole days.
+/// Made of something else in CODESYS and SCL, whose TIME and TOD are whole ms, in CODESYS also DT
+/// whole seconds, and DATE whole days.
 bool is_whole(const Expression& e) {
     const Type &from = *e.operands[0]->type, &to = e.type->plain();
+    const bool is_kind = to.kind == Kind::time || to.kind == Kind::clock || !is_of_s7(e);
     return e.place.dialect().times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
-           !to.counts_ns && (!from.is_time() || from.counts_ns);
+           !to.counts_ns && is_kind && (!from.is_time() || from.counts_ns);
 }
 
-/// A TIME begins again at 2^32 ms.
-Slot in_whole_units(Writing& w, Slot slot, const Type& to, Slot wanted) {
+/// A TIME begins again at 2^32 ms, in SCL after 2^31 - 1 with the least one.
+Slot in_whole_units(Writing& w, Slot slot, const Type& to, bool has_sign, Slot wanted) {
     const Slot unit = w.constant_slot(to.kind == Kind::date     ? 86'400'000'000'000U
                                       : to.kind == Kind::moment ? 1'000'000'000U
                                                                 : 1'000'000U);
     Slot count = w.emit(Op::div_lint, none, slot, unit);
     if (to.kind == Kind::time)
-        count = w.emit(of_type(Op::wrap_sint, integer_type(32, false)), none, count);
+        count = w.emit(of_type(Op::wrap_sint, integer_type(32, has_sign)), none, count);
     return w.emit(Op::mul_lint, wanted, count, unit);
 }
 
@@ -168,7 +178,7 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
         slot = convert_counted(w, slot, to, unit_of(to), none);
     else
         slot = convert(w, slot, from, to, false, none);
-    return in_whole_units(w, slot, to, wanted);
+    return in_whole_units(w, slot, to, is_of_s7(e), wanted);
 }
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
@@ -227,7 +237,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
         if (e.type->is_time()) {
             const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
-            return is_whole(e) ? in_whole_units(w, time, *e.type, wanted) : time;
+            return is_whole(e) ? in_whole_units(w, time, *e.type, is_s7, wanted) : time;
         }
         if (e.type->is_character) {
             const Slot to = w.result(wanted);

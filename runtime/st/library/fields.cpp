@@ -49,7 +49,9 @@ class FieldWriter {
 
     void write(const Variable& variable, std::uint32_t at, const std::string& path,
                Direction direction) {
-        if (variable.space != Space::frame) return;
+        const bool has_no_name =
+            variable.section == Section::temp && variable.text.starts_with('%');
+        if (variable.space != Space::frame || has_no_name) return;
         const std::size_t offset =
             8 * std::size_t{at} +
             (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});

@@ -88,6 +88,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .dint_is_time = true,
                      .long_numbers_count_time = true,
                      .zero_divides_to_zero = true,
+                     .times_count_ms = true,
                      .texts_are_windows_1252 = true};
 
 /// `RESOURCE Res0 ON PLC` stands in a line of its own.

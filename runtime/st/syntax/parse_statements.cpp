@@ -234,9 +234,19 @@ void parse_try(Parsing& p, Statement& statement) {
 }
 
 /// Jump_Stmt : ( 'EXIT' | 'CONTINUE' | 'RETURN' ) ';'
-/// `RETURN(n > 0);` of CODESYS leaves if that holds.
+/// `RETURN(n > 0);` of CODESYS leaves if that holds, `RETURN n > 0;` of SCL is `ENO := n > 0;
+/// RETURN;`.
 void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
-    Statement* jump = p.make(kind, p.take());
+    const Token word = p.take();
+    Statement* jump = p.make(kind, word);
+    const bool is_siemens = p.source->dialect.vendor == Vendor::siemens;
+    if (kind == Statement::Kind::return_ && is_siemens && !p.is(Word::semicolon)) {
+        Statement* told = p.make(Statement::Kind::assign, word);
+        told->target = p.make(Expression::Kind::name, word);
+        told->target->token.text = "ENO";
+        told->value = parse_expression(p);
+        to.push_back(told);
+    }
     if (kind == Statement::Kind::return_ && p.source->dialect.is_loose && p.is(Word::open)) {
         Statement* test = p.make(Statement::Kind::if_, p.take());
         Branch& branch = test->branches.emplace_back();
