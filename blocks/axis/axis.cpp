@@ -65,7 +65,8 @@ std::span<const Field> Axis::fields() {
                   "front of a software limit it stops harder where that is too weak")
             .above(0),
         parameter("default_jerk", &A::default_jerk, "{unit}/s^3",
-                  "of commands with a jerk below 0; 0: trapezoids")
+                  "of commands with a jerk below 0; 0: trapezoids, whose acceleration comes in a "
+                  "nanosecond")
             .at_least(0),
         parameter(
             "software_limits", &A::software_limits, "",

@@ -295,8 +295,8 @@ struct Axis {
     MotionError join_law(const Context& context, const Moment& at, const MotionState& from);
     MotionError place_cam(const Context& context, const MotionState& leader,
                           const MotionState& from);
-    void place_direct_cam(const Context& context, const MotionState& leader,
-                          const MotionState& from, const Cam& table);
+    void place_direct_cam(const MotionState& leader, const MotionState& from, const Cam& table);
+    MotionError turn_to_master(const Context& context, const MotionState& leader, const Cam& table);
     Cam cam(const Context& context) const;
     void begin_phasing(const Context& context, Job& job);
 

@@ -20,15 +20,6 @@ double time_since(const MotionState& now, double position, double most) {
     return high;
 }
 
-/// The period of a cam that begins, in the direction of its master, where it is met.
-double period_at_sync(const SyncMotion& sync, const Cam& table) {
-    constexpr double nearly = 1e-9;
-    const double x = sync.coupling.master_scaling * sync.sync_x + sync.cam_origin;
-    const double periods = (x - table.begin()) / table.length(), nearest = std::round(periods);
-    if (std::abs(periods - nearest) > nearly) return std::floor(periods);
-    return sync.coupling.master_scaling * sync.direction > 0 ? nearest : nearest - 1;
-}
-
 }  // namespace
 
 void Axis::look_at_shift(const Context& context) {
@@ -131,11 +122,15 @@ void Axis::follow_law(const Context& context) {
     const Cam table = cam(context);
     if (sync.law == Law::cammed && table.points.empty())
         return fail_before(context, MotionError::no_cam);
+    if (sync.stage < Stage::in_transition && leader.velocity * sync.direction < 0)
+        if (const MotionError why = turn_to_master(context, leader, table);
+            why != MotionError::none)
+            return fail(context, {scan_time}, why);
     if (sync.stage == Stage::waiting && !leaves(context, leader, table)) return;
     if (sync.stage == Stage::approaching) {
         follow_approach(context, leader, table);
         if (sync.stage == Stage::in_sync && table.periodic)
-            sync.last_periods = period_at_sync(sync, table);
+            sync.last_periods = sync.period_from(sync.sync_x, sync.direction, table);
     }
     if (sync.stage == Stage::in_transition &&
         gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true)) {
@@ -223,8 +218,10 @@ void Axis::look_for_end(const Context& context, const MotionState& leader, const
         const double way = periods > before ? 1 : -1;
         const double end = first + table.length() * (way > 0 ? periods : periods + 1);
         const bool comes_from_there = way * scaling * leader.velocity < 0;
-        if (periods == before || (comes_from_there && std::abs(x - end) <= slack)) return;
+        const bool is_at_end = std::abs(x - end) <= slack, begins = before != std::floor(before);
+        if (periods == before || ((comes_from_there || begins) && is_at_end)) return;
         sync.last_periods = periods;
+        if (begins) return;
         return end_cam(context, leader, end, table.at(end));
     }
     CurvePoint behind = table.last();

@@ -30,10 +30,14 @@ MotionError sync_error(PlanResult result) {
                                             : MotionError::limit_not_positive;
 }
 
-/// At which of its ends a cam that is not periodic is over.
+/// In which period a cam begins, which is open at the seam of two until the master moves, and at
+/// which of its ends one that is not periodic is over.
 void find_end(SyncMotion& sync, const MotionState& leader, const Cam& table) {
     const double x = sync.coupling.master_scaling * leader.position + sync.cam_origin;
-    sync.last_periods = table.periods(x);
+    sync.last_periods = sync.period_from(leader.position, sync.direction, table);
+    if (leader.velocity == 0)
+        sync.last_periods +=
+            0.5 * (sync.period_from(leader.position, -sync.direction, table) - sync.last_periods);
     sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
     if (!table.periodic && sync.coupling.stays != 0)
         sync.last_periods = -static_cast<double>(sync.ends_at);
@@ -46,10 +50,20 @@ double turn_of(const SyncMotion& sync, const Cam& table, double modulo) {
     return CamTableId::of(sync.coupling.cam).master_absolute ? modulo : 0;
 }
 
-/// A place that the master has passed in its turn, or where it is, is met in the next one.
-void meet_in_next_turn(SyncMotion& sync, const MotionState& leader, double turn, const Cam& table) {
+/// From where a modulo axis is on its way to where it is in its turn, 0 to its period: at the seam
+/// of two turns in the one that it runs into.
+double to_its_turn(const Axis& leading, const MotionState& leader) {
+    if (!leading.modulo) return 0;
+    const double at = leader.position + leading.relocated, period = leading.period;
+    const double within = within_period(at, period), slack = sum_rounding * (std::abs(at) + period);
+    if (leader.velocity < 0 && within <= slack) return within + period - at;
+    if (leader.velocity >= 0 && period - within <= slack) return within - period - at;
+    return within - at;
+}
+
+/// A cam that is executed once moves with its place.
+void move_place(SyncMotion& sync, const MotionState& leader, double way, const Cam& table) {
     const Coupling& c = sync.coupling;
-    const double way = sync.direction * turn * (std::floor(-sync.distance(leader) / turn) + 1);
     const double before = sync.law_at(leader.position, table).y;
     sync.sync_x += way;
     if (sync.law == Law::positioned || table.periodic) return;
@@ -57,6 +71,12 @@ void meet_in_next_turn(SyncMotion& sync, const MotionState& leader, double turn,
     if (!CamTableId::of(c.cam).slave_absolute || c.start_mode == StartMode::relative)
         sync.cam_rise += before - sync.law_at(leader.position, table).y;
     find_end(sync, leader, table);
+}
+
+/// A place that the master has passed in its turn, or where it is, is met in the next one.
+void meet_in_next_turn(SyncMotion& sync, const MotionState& leader, double turn, const Cam& table) {
+    const double turns = std::floor(-sync.distance(leader) / turn) + 1;
+    move_place(sync, leader, sync.direction * turn * turns, table);
 }
 
 }  // namespace
@@ -149,6 +169,28 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     return sync_error(velocity_motion.begin(from, from.velocity + rest, sync.dynamics, at));
 }
 
+/// Which of the places that come again with the turns of its master a slave meets is open until the
+/// master moves: one that stands takes the next in that direction. A master that is measured moves
+/// to and fro by its noise, and has to pass a place first. Where the next is too near it is the one
+/// behind.
+MotionError Axis::turn_to_master(const Context& context, const MotionState& leader,
+                                 const Cam& table) {
+    const bool stands = base.velocity == 0 && base.acceleration == 0;
+    if (sync.stage == Stage::approaching && !stands) return MotionError::none;
+    const Axis& leading = context.seen_instance<Axis>(sync.coupling.master.axis);
+    const double turn = turn_of(sync, table, leading.modulo ? leading.period : 0);
+    const bool passes = sync.distance(leader) > turn + sync.coupling.start_distance;
+    if (!(turn > 0) || (sync.coupling.is_measured() && !passes)) return MotionError::none;
+    sync.direction = -sync.direction;
+    if (sync.law == Law::positioned || table.periodic) sync.meet(leader, sync.sync_x, turn);
+    if (!(sync.distance(leader) > 0)) meet_in_next_turn(sync, leader, turn, table);
+    if (sync.stage == Stage::waiting) return MotionError::none;
+    sync.led = leader;
+    if (approach(context, base, table, {scan_time}) == MotionError::none) return MotionError::none;
+    move_place(sync, leader, sync.direction * turn, table);
+    return approach(context, base, table, {scan_time});
+}
+
 /// Onto the cam wherever the master is.
 MotionError Axis::ramp_in(const MotionState& from, const MotionState& leader, const Cam& table,
                           const Moment& at) {
@@ -179,19 +221,23 @@ MotionError Axis::lacks(const MotionState& guide, PlanResult result) {
 }
 
 /// A relative cam begins, on its axis, at MasterOffset and, for the slave, where the slave is. One
-/// that is executed once ends at the other end than it is entered by.
+/// that is executed once ends at the other end than it is entered by; of a modulo axis it lies in
+/// the turn that the axis is in.
 MotionError Axis::place_cam(const Context& context, const MotionState& leader,
                             const MotionState& from) {
     const Coupling& c = sync.coupling;
     const CamTableId id = CamTableId::of(c.cam);
     const Cam table = WrittenCam::find(context, id);
     if (table.points.empty()) return MotionError::no_cam;
-    const double relocated_by = context.seen_instance<Axis>(c.master.axis).relocated;
-    sync.cam_origin =
-        c.master_offset + c.master_scaling * (id.master_absolute ? relocated_by : -leader.position);
+    const Axis& leading = context.seen_instance<Axis>(c.master.axis);
+    const bool direct = c.start_mode == StartMode::direct;
+    double absolute_from = leading.relocated;
+    if (direct || !table.periodic) absolute_from += to_its_turn(leading, leader);
+    sync.cam_origin = c.master_offset +
+                      c.master_scaling * (id.master_absolute ? absolute_from : -leader.position);
     sync.cam_rise = c.slave_offset;
-    if (c.start_mode == StartMode::direct)
-        place_direct_cam(context, leader, from, table);
+    if (direct)
+        place_direct_cam(leader, from, table);
     else if (!id.slave_absolute || c.start_mode == StartMode::relative)
         sync.cam_rise += from.position - sync.law_at(leader.position, table).y;
     sync.meet(leader, (c.master_sync - sync.cam_origin) / c.master_scaling,
@@ -202,14 +248,8 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
 
 /// Its origin is where the slave is, or the axis' own. It begins with its first period, and of a
 /// modulo axis with the turn that the axis is in.
-void Axis::place_direct_cam(const Context& context, const MotionState& leader,
-                            const MotionState& from, const Cam& table) {
+void Axis::place_direct_cam(const MotionState& leader, const MotionState& from, const Cam& table) {
     const Coupling& c = sync.coupling;
-    const Axis& leading = context.seen_instance<Axis>(c.master.axis);
-    if (leading.modulo && CamTableId::of(c.cam).master_absolute) {
-        const double at = leader.position + leading.relocated;
-        sync.cam_origin += c.master_scaling * (within_period(at, leading.period) - at);
-    }
     const double x = c.master_scaling * leader.position + sync.cam_origin;
     if (!CamTableId::of(c.cam).slave_absolute) sync.cam_rise += from.position;
     if (table.periodic) sync.cam_rise -= c.slave_scaling * table.periods(x) * table.lift();

@@ -47,7 +47,8 @@ std::span<const TableField> CamTable::tables() {
     };
     static const TableField all[] = {[] {
         TableField points = lineshaft::table("points", &CamTable::table, columns,
-                                             "the cam, point by point, or a CSV file");
+                                             "the cam, point by point, or a CSV file; [0 mm, 0 mm, "
+                                             "~, ~, cubic] leaves two columns open");
         points.needed = 2;
         points.complete = [](std::byte* block) {
             return std::launder(reinterpret_cast<CamTable*>(block))->complete();

@@ -11,6 +11,13 @@ namespace {
 /// A timed motion takes the least part of acceleration and jerk, in steps of 4, that is enough.
 constexpr double gentlest = 0x1p-12;
 
+/// How far a curve leads beyond both of its ends.
+double beyond_ends(const SyncCurve& curve, double end) {
+    const Range all = range(curve.y, 0, 1);
+    const double begin = curve.y.c[0];
+    return std::max(std::min(begin, end) - all.least, all.greatest - std::max(begin, end));
+}
+
 }  // namespace
 
 TransitionLimits limits_towards(double direction, const Dynamics& d) {
@@ -79,6 +86,14 @@ CurvePoint SyncMotion::on_axis(const CurvePoint& p) const {
     return {S * p.y + cam_rise, S * M * p.slope, S * M * M * p.bend, S * M * M * M * p.twist};
 }
 
+double SyncMotion::period_from(double master, double towards, const Cam& cam) const {
+    constexpr double nearly = 1e-9;
+    const double x = coupling.master_scaling * master + cam_origin;
+    const double periods = (x - cam.begin()) / cam.length(), nearest = std::round(periods);
+    if (std::abs(periods - nearest) > nearly) return std::floor(periods);
+    return coupling.master_scaling * towards > 0 ? nearest : nearest - 1;
+}
+
 void SyncMotion::meet(const MotionState& master, double position, double repeats) {
     sync_x = position;
     const bool stands = master.velocity == 0;
@@ -122,6 +137,30 @@ bool SyncMotion::choose_curve(const SyncCurve& tried, const Forecast& master, co
     return true;
 }
 
+/// Each half of its way it is less far beyond the ends, and takes more of the limits: where that is
+/// no 16th of the way between them, a shorter one is no better.
+bool SyncMotion::choose_later(const MotionState& slave, const Forecast& master, const Dynamics& d,
+                              CurveFault& fault) {
+    constexpr int most_halvings = 12;
+    const double whole = sync_x - master.at(0).position;
+    const double enough = 0x1p-4 * std::abs(joins.y - slave.position);
+    const auto halved = [&](int times) {
+        const double length = std::ldexp(whole, -times);
+        return SyncCurve::between(sync_x - length, length, {slave.position, 0, 0, 0}, joins);
+    };
+    int most = 0;
+    while (most < most_halvings && beyond_ends(halved(most), joins.y) > enough) ++most;
+    for (const double part : {0.25, 0.5, 1.0}) {
+        Dynamics kept = d;
+        kept.acceleration *= part;
+        kept.deceleration *= part;
+        kept.jerk *= part;
+        for (int times = most; times > 0; --times)
+            if (choose_curve(halved(times), master, kept, true, fault)) return true;
+    }
+    return false;
+}
+
 bool SyncMotion::choose_timed(const MotionState& slave, const Meeting& goal, const Dynamics& d,
                               bool may_turn, CurveFault& fault) {
     if (!std::isfinite(goal.time)) return false;
@@ -151,7 +190,8 @@ CurveFault SyncMotion::choose(const MotionState& slave, const Forecast& master, 
                               const Dynamics& d, const Choice& from) {
     const MotionState leader = master.at(0);
     CurvePoint begin;
-    const bool may_begin = from.steady || !from.on_its_way;
+    const bool stands = slave.velocity == 0 && slave.acceleration == 0;
+    const bool may_begin = from.steady || !from.on_its_way || stands;
     const bool begins =
         may_begin && sync_x != leader.position && start_of_curve(slave, leader, begin);
     const SyncCurve fresh =
@@ -163,6 +203,8 @@ CurveFault SyncMotion::choose(const MotionState& slave, const Forecast& master, 
         const bool curves = may_turn || !from.steady || !master.goes_against(direction, goal.time);
         meeting = goal;
         stage = Stage::approaching;
+        const bool may_wait = stands && begins && coupling.start_distance == 0;
+        if (may_turn && may_wait && choose_later(slave, master, d, fault)) return {};
         if (curves && from.kept_curve && choose_curve(curve, master, d, may_turn, fault)) return {};
         if (curves && !from.on_its_way && begins && choose_curve(fresh, master, d, may_turn, fault))
             return {};

@@ -36,7 +36,8 @@ struct Meeting {
 /// `positioned` and `cammed`: it follows a law, slave over master, which it joins at `sync_x`: by a
 /// SyncCurve over the master, as long as that keeps the limits and does not turn round, else by a
 /// TimedMotion to where they will meet, planned anew whenever that changes. A slave whose master
-/// does not come any more waits in rest.
+/// does not come any more waits in rest. One that stands and has no start_distance, and would turn
+/// round far beyond both ends of its way, stays there until a shorter curve is enough.
 struct SyncMotion {
     enum class Law : std::int64_t { geared, positioned, cammed };
     enum class Stage : std::int64_t {
@@ -111,6 +112,10 @@ struct SyncMotion {
     /// The law at the master's position x, of a cam by its table.
     CurvePoint law_at(double x, const Cam& cam) const;
 
+    /// The period of a cam that a master is in; where two meet, that in the direction of the
+    /// master.
+    double period_from(double master, double towards, const Cam& cam) const;
+
     /// A command that waits for the end of this one begins as soon as it is in sync; that of a cam
     /// at its end.
     bool holds() const { return stage == Stage::in_sync && (law != Law::cammed || finished != 0); }
@@ -154,6 +159,9 @@ struct SyncMotion {
                       const Dynamics& d, const Choice& from);
     bool choose_curve(const SyncCurve& tried, const Forecast& master, const Dynamics& d,
                       bool may_turn, CurveFault& fault);
+    /// A slave that stands may leave later.
+    bool choose_later(const MotionState& slave, const Forecast& master, const Dynamics& d,
+                      CurveFault& fault);
     bool choose_timed(const MotionState& slave, const Meeting& goal, const Dynamics& d,
                       bool may_turn, CurveFault& fault);
 

@@ -178,7 +178,8 @@ Field deceleration() {
 
 Field jerk() {
     return input("Jerk", &CommandBlock::pins, &Request::jerk, "{Axis}/s^3",
-                 "limit; 0: a trapezoid; below 0: the axis' own");
+                 "limit; 0: a trapezoid, whose acceleration comes in a nanosecond; below 0: the "
+                 "axis' own");
 }
 
 Field direction() {

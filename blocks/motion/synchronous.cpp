@@ -63,7 +63,8 @@ Field of_master(Field f) {
 
 Field start_distance() {
     return coupled("MasterStartDistance", &C::start_distance, "{Master}",
-                   "of the master before it is met, where the slave leaves; 0: at once")
+                   "of the master before it is met, where the slave leaves; 0: at once, or later "
+                   "where it stands and would swing out")
         .at_least(0);
 }
 

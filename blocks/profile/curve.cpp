@@ -88,15 +88,15 @@ CurveFault check_step(const MotionState& before, const MotionState& now, double 
 
 CurveFault check(const SyncCurve& curve, const MotionState& now, const TransitionLimits& limits,
                  double last) {
-    const double L = curve.length, low = std::max(curve.share(now.position), 0.0);
+    const double L = curve.length, here = curve.share(now.position), low = std::max(here, 0.0);
     const double a = now.acceleration, gain = 2 * a * L;
     const double square = now.velocity * now.velocity;
     const bool towards = now.velocity != 0 ? now.velocity * L > 0 : a * L > 0;
-    const double turn = gain < 0 && towards ? low - square / gain : 1;
+    const double turn = gain < 0 && towards ? here - square / gain : 1;
     const double high = towards ? std::min({turn, curve.share(last), 1.0}) : low;
     if (!(low < high)) return CurveFault::none;
 
-    const Polynomial<1> speed{{square - gain * low, gain}};
+    const Polynomial<1> speed{{square - gain * here, gain}};
     const auto first = curve.y.slope();
     const auto second = first.slope();
     const auto scaled = [](auto p, double by) {

@@ -88,22 +88,28 @@ void set_constant(Resolving& to, const Assignment& assignment) {
         store(field->type, to.instance(assignment).image.data() + field->offset, *constant);
 }
 
+std::string columns_of(const TableField& table) {
+    std::vector<std::string_view> names;
+    for (const Field& column : table.columns) names.push_back(column.name);
+    return fmt::format("write [{}]", fmt::join(names, ", "));
+}
+
+/// An empty value of a column that need not be given leaves it as it is.
 void set_row(Resolving& to, const Instance& block, const TableField& table, const Node& row,
              std::byte* slot) {
-    if (!to.read.expect_sequence(row, fmt::format("a row of '{}'", table.name))) return;
+    if (!to.read.expect_sequence(row, fmt::format("a row of '{}'", table.name), columns_of(table)))
+        return;
     const std::size_t most = table.columns.size(), least = table.needed > 0 ? table.needed : most;
-    if (row.items.size() < least || row.items.size() > most) {
-        std::vector<std::string_view> names;
-        for (const Field& column : table.columns) names.push_back(column.name);
+    if (row.items.size() < least || row.items.size() > most)
         return to.read.fail(
             code::row_of_wrong_length, row,
             fmt::format("a row of '{}' has {} {}, not {}", table.name,
                         least < most ? fmt::format("{} to {}", least, most) : std::to_string(most),
                         table.has_names() ? "values" : "numbers", row.items.size()),
-            fmt::format("write [{}]", fmt::join(names, ", ")));
-    }
+            columns_of(table));
     for (std::size_t i = 0; i < row.items.size(); ++i, slot += sizeof(std::int64_t)) {
         const Field& column = table.columns[i];
+        if (i >= least && row.items[i].is_empty()) continue;
         if (!to.read.expect_scalar(row.items[i], fmt::format("'{}'", column.name))) continue;
         const auto number =
             read_literal(to.read, row.items[i], column, to.net.unit_of(block, column.unit));

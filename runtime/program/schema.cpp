@@ -147,6 +147,7 @@ Json rows(const BlockType& type, const TableField& table) {
         }
         if (column.names.empty() && may_be_plain(type, column))
             forms.push_back(bare_number(column));
+        if (table.needed > 0 && columns.size() >= table.needed) forms.push_back(of_type("null"));
         columns.push_back(described(column.doc, any_of(forms)));
     }
     Json row = of_type("array");

@@ -149,10 +149,10 @@ bool Reader::expect_map(const Node& node, std::string_view what, std::string hel
     return node.is_map();
 }
 
-bool Reader::expect_sequence(const Node& node, std::string_view what) const {
+bool Reader::expect_sequence(const Node& node, std::string_view what, std::string help) const {
     if (!node.is_sequence())
         fail(code::wrong_kind_of_value, node,
-             fmt::format("{} is a list, not {}", what, name_of(node.kind)));
+             fmt::format("{} is a list, not {}", what, name_of(node.kind)), std::move(help));
     return node.is_sequence();
 }
 

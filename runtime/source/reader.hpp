@@ -24,7 +24,7 @@ class Reader {
 
     /// L0209 unless it is one.
     bool expect_map(const Node& node, std::string_view what, std::string help = {}) const;
-    bool expect_sequence(const Node& node, std::string_view what) const;
+    bool expect_sequence(const Node& node, std::string_view what, std::string help = {}) const;
     bool expect_scalar(const Node& node, std::string_view what) const;
 
     /// Letters, digits and underscores, not starting with a digit; L0210 otherwise.

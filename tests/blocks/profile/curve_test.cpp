@@ -92,6 +92,18 @@ TEST_CASE("a master that turns before the end is looked at as far as it comes") 
     CHECK(check(curve, {0, -5, 0, 0}, {1, 1, 1, 1}) == CurveFault::none);
 }
 
+TEST_CASE(
+    "a curve that its master has not come to is checked with the velocity that it will have") {
+    const auto curve = SyncCurve::between(100, 100, {0, 0, 0}, {100, 2, 0});
+    const MotionState master{0, 100, 50, 0};
+    const MotionState there{100, std::sqrt(100 * 100 + 2 * 50 * 100), 50, 0};
+    for (const double velocity : {250, 270, 280, 300, 340, 400}) {
+        const TransitionLimits limits{velocity, 1e6, 1e6, 1e9};
+        CHECK(check(curve, master, limits) == check(curve, there, limits));
+    }
+    CHECK(check(curve, master, {340, 1e6, 1e6, 1e9}) == CurveFault::velocity);
+}
+
 TEST_CASE("a slave that moves cannot begin a curve over a master that stands") {
     CurvePoint p;
     CHECK_FALSE(start_of_curve({0, 1, 0, 0}, {}, p));
