@@ -251,6 +251,36 @@ def check_older_forms():
     assert "'to' is a word of the language, not a name" in run("check", wrong, code=2)
 
 
+def check_binary_libraries():
+    """What Automation Studio only declares of a library is meant as it is here; what is not here is told once for all of it."""
+    lists = '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>{}.fun</File></Files></Library>\n'
+    declared = {
+        "standard": "{REDUND_OK} FUNCTION_BLOCK TON\n\tVAR_INPUT\n\t\tIN : BOOL;\n\t\tPT : TIME;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tQ : BOOL;\n"
+                    "\tEND_VAR\n\tVAR\n\t\tStartTime : TIME;\n\tEND_VAR\nEND_FUNCTION_BLOCK\nFUNCTION LEN : INT\n\tVAR_INPUT\n\t\tIN : STRING[32767];\n"
+                    "\tEND_VAR\nEND_FUNCTION\n",
+        "AsIecCon": "FUNCTION REAL_TO_INT : INT\n\tVAR_INPUT\n\t\tIN : REAL;\n\tEND_VAR\nEND_FUNCTION\n",
+        "AsBrStr": "FUNCTION brsmemset : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tvalue : USINT;\n\t\tlength : UDINT;\n\tEND_VAR\nEND_FUNCTION\n",
+        "McAxis": "FUNCTION_BLOCK MC_Power\n\tVAR_INPUT\n\t\tAxis : REFERENCE TO McAxisType;\n\t\tEnable : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK MC_BR_Reset\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK MC_BR_NotUsed\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n",
+        "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n"}
+    for name, text in declared.items():
+        write(f"Binary/Logical/Libraries/{name}/{'Binary' if name == 'standard' else 'binary'}.lby", lists.format(name))
+        write(f"Binary/Logical/Libraries/{name}/{name}.fun", text)
+    write("Binary/Logical/Libraries/McBase/McBase.typ", "TYPE\n\tMcAxisType : STRUCT\n\t\tcontrolif : REFERENCE TO McInternal;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Binary/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
+    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\ti, n, filled : INT;\nEND_VAR\n")
+    write("Binary/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := T#10ms);\n\tIF t.Q THEN n := n + 1; END_IF\n\ti := REAL_TO_INT(42.0) + LEN('abc');\n"
+          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\nEND_PROGRAM\n")
+    said = run("check", "Binary")
+    assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
+    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset" in said, said
+    run("new", "binary", "--from", "Binary")
+    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n")
+    run("run", "binary.yaml", "--quiet")
+
+
 def check_prefix():
     """Names with a prefix are those of its namespace."""
     plain = drawn(RUNG)
@@ -974,6 +1004,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_configuration()
     check_chart_flags()
     check_older_forms()
+    check_binary_libraries()
     check_prefix()
     check_yaml_folder()
     check_neighbours()
