@@ -281,6 +281,35 @@ def check_binary_libraries():
     run("run", "binary.yaml", "--quiet")
 
 
+def check_editors_of_matiec():
+    """Texts without quotes, and points of a bus, as the editors of Beremiz and OpenPLC keep them; CODESYS' lists of several kinds."""
+    variables = ('<variable name="{}"{}><type><{}/></type>{}</variable>')
+    begun = '<initialValue><simpleValue value="{}"/></initialValue>'
+    interface = "<localVars>" + "".join(
+        variables.format(*row) for row in (("plain", "", "string", begun.format("hello")), ("quoted", "", "string", begun.format("'ab'")),
+                                           ("wide", "", "wstring", begun.format("a b c")), ("n", "", "INT", ""), ("of_wide", "", "INT", ""),
+                                           ("first", ' address="%QW0.1.0.0"', "WORD", ""), ("second", ' address="%QW0.0.8192.0"', "WORD", ""))) + "</localVars>"
+    write("editors/plc.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader companyName="Beremiz"/><types><dataTypes/><pous>'
+          f'<pou name="Main" pouType="program"><interface>{interface}</interface><body><ST><xhtml:p><![CDATA[n := LEN(plain) + LEN(quoted);'
+          "of_wide := LEN(wide); first := 3; second := first + 1;]]></xhtml:p></ST></body></pou></pous></types><instances/></project>\n")
+    run("new", "of_editors", "--from", "editors/plc.xml")
+    write("of_editors.yaml", (work / "of_editors.yaml").read_text() + "expect:\n  - {at: end, Main.n: 7}\n  - {at: end, Main.of_wide: 5}\n"
+          "  - {at: end, Main.second: 4}\n")
+    run("run", "of_editors.yaml", "--quiet")
+    listed = '<globalVars name="G"{}><variable name="{}"><type><INT/></type>' + begun.format(3) + "</variable></globalVars>"
+    write("mixed.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0200"><fileHeader productName="CODESYS"/><types><dataTypes/><pous>'
+          '<pou name="P" pouType="program"><interface><localVars><variable name="a"><type><array><dimension lower="1" upper="MOST"/><baseType><INT/></baseType>'
+          "</array></type></variable></localVars></interface><body><ST><xhtml>a[MOST] := one;</xhtml></ST></body></pou></pous></types><instances/><addData>"
+          '<data name="http://www.3s-software.com/plcopenxml/globalvars"><globalVars name="G"><variable name="one"><type><INT/></type></variable>'
+          '<variable name="MOST"><type><INT/></type></variable><addData><data name="http://www.3s-software.com/plcopenxml/mixedattrsvarlist"><MixedAttrsVarList>'
+          + listed.format("", "one") + listed.format(' constant="true"', "MOST") + "</MixedAttrsVarList></data></addData></globalVars></data></addData></project>\n")
+    assert run("check", "mixed.xml").startswith("ok"), "a list with constants among its variables"
+    write("sysmac.xml", '<?xml version="1.0"?>\n<Project xmlns="www.iec.ch/public/TC65SC65BWG7TF10" schemaVersion="1"/>\n')
+    assert "this is XML of IEC 61131-10, which is not read" in run("check", "sysmac.xml", code=2)
+    write("old.il", "LD a\n")
+    assert "this is an instruction list, which is not read" in run("check", "old.il", code=2)
+
+
 def check_prefix():
     """Names with a prefix are those of its namespace."""
     plain = drawn(RUNG)
@@ -1005,6 +1034,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()
+    check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
     check_neighbours()
