@@ -485,7 +485,7 @@ def check_headers():
             '<variable name="pulses"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
             "counter(CD := TRUE);\nsize := SIZEOF(text);\nfalls(CLK := FALSE);\nIF falls.Q THEN pulses := pulses + 1; END_IF;"
             "</xhtml></ST></body></pou></pous></types><instances><configurations/></instances></project>")
-    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (0, 255, 1))):
+    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (0, 127, 1))):
         write(f"{product}.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
               f'<fileHeader companyName="" productName="{product}" productVersion="1" creationDateTime="2024-01-01T00:00:00"/>' + body)
         run("new", product, "--from", f"{product}.xml")
