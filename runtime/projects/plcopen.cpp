@@ -23,7 +23,7 @@ bool is_of_codesys(const XmlFile& file) {
            file.text().find("CODESYS") != std::string_view::npos;
 }
 
-/// Of the namespace of IEC 61131-10's XML, which Sysmac Studio writes.
+/// In the namespace of IEC 61131-10's XML, which Sysmac Studio writes.
 constexpr std::string_view of_standard = "TC65SC65BWG7TF10";
 
 /// One project of PLCopen XML.

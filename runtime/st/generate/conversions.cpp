@@ -111,7 +111,7 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
                    : convert_counted(w, slot, to, of_seconds, wanted);
 }
 
-/// Of a REAL, rounded: MatIEC has 0 below 0 where the number has no sign, and then the last bits.
+/// A REAL, rounded: MatIEC has 0 below 0 where the number has no sign, and then the last bits.
 bool is_cut_by_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const bool is_whole = to.is_integer() || (to.is_bits() && to.bits != from.bits);
