@@ -262,6 +262,65 @@ def check_older_forms():
     assert "'to' is a word of the language, not a name" in run("check", wrong, code=2)
 
 
+def check_binary_libraries():
+    """What Automation Studio only declares of a library is meant as it is here; what is not here is told once for all of it."""
+    lists = '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>{}.fun</File></Files></Library>\n'
+    declared = {
+        "standard": "{REDUND_OK} FUNCTION_BLOCK TON\n\tVAR_INPUT\n\t\tIN : BOOL;\n\t\tPT : TIME;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tQ : BOOL;\n"
+                    "\tEND_VAR\n\tVAR\n\t\tStartTime : TIME;\n\tEND_VAR\nEND_FUNCTION_BLOCK\nFUNCTION LEN : INT\n\tVAR_INPUT\n\t\tIN : STRING[32767];\n"
+                    "\tEND_VAR\nEND_FUNCTION\n",
+        "AsIecCon": "FUNCTION REAL_TO_INT : INT\n\tVAR_INPUT\n\t\tIN : REAL;\n\tEND_VAR\nEND_FUNCTION\n",
+        "AsBrStr": "FUNCTION brsmemset : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tvalue : USINT;\n\t\tlength : UDINT;\n\tEND_VAR\nEND_FUNCTION\n",
+        "McAxis": "FUNCTION_BLOCK MC_Power\n\tVAR_INPUT\n\t\tAxis : REFERENCE TO McAxisType;\n\t\tEnable : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK MC_BR_Reset\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK MC_BR_NotUsed\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n",
+        "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n"}
+    for name, text in declared.items():
+        write(f"Binary/Logical/Libraries/{name}/{'Binary' if name == 'standard' else 'binary'}.lby", lists.format(name))
+        write(f"Binary/Logical/Libraries/{name}/{name}.fun", text)
+    write("Binary/Logical/Libraries/McBase/McBase.typ", "TYPE\n\tMcAxisType : STRUCT\n\t\tcontrolif : REFERENCE TO McInternal;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Binary/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
+    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\ti, n, filled : INT;\nEND_VAR\n")
+    write("Binary/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := T#10ms);\n\tIF t.Q THEN n := n + 1; END_IF\n\ti := REAL_TO_INT(42.0) + LEN('abc');\n"
+          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\nEND_PROGRAM\n")
+    said = run("check", "Binary")
+    assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
+    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset" in said, said
+    run("new", "binary", "--from", "Binary")
+    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n")
+    run("run", "binary.yaml", "--quiet")
+
+
+def check_editors_of_matiec():
+    """Texts without quotes, and points of a bus, as the editors of Beremiz and OpenPLC keep them; CODESYS' lists of several kinds."""
+    variables = ('<variable name="{}"{}><type><{}/></type>{}</variable>')
+    begun = '<initialValue><simpleValue value="{}"/></initialValue>'
+    interface = "<localVars>" + "".join(
+        variables.format(*row) for row in (("plain", "", "string", begun.format("hello")), ("quoted", "", "string", begun.format("'ab'")),
+                                           ("wide", "", "wstring", begun.format("a b c")), ("n", "", "INT", ""), ("of_wide", "", "INT", ""),
+                                           ("first", ' address="%QW0.1.0.0"', "WORD", ""), ("second", ' address="%QW0.0.8192.0"', "WORD", ""))) + "</localVars>"
+    write("editors/plc.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader companyName="Beremiz"/><types><dataTypes/><pous>'
+          f'<pou name="Main" pouType="program"><interface>{interface}</interface><body><ST><xhtml:p><![CDATA[n := LEN(plain) + LEN(quoted);'
+          "of_wide := LEN(wide); first := 3; second := first + 1;]]></xhtml:p></ST></body></pou></pous></types><instances/></project>\n")
+    run("new", "of_editors", "--from", "editors/plc.xml")
+    write("of_editors.yaml", (work / "of_editors.yaml").read_text() + "expect:\n  - {at: end, Main.n: 7}\n  - {at: end, Main.of_wide: 5}\n"
+          "  - {at: end, Main.second: 4}\n")
+    run("run", "of_editors.yaml", "--quiet")
+    listed = '<globalVars name="G"{}><variable name="{}"><type><INT/></type>' + begun.format(3) + "</variable></globalVars>"
+    write("mixed.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0200"><fileHeader productName="CODESYS"/><types><dataTypes/><pous>'
+          '<pou name="P" pouType="program"><interface><localVars><variable name="a"><type><array><dimension lower="1" upper="MOST"/><baseType><INT/></baseType>'
+          "</array></type></variable></localVars></interface><body><ST><xhtml>a[MOST] := one;</xhtml></ST></body></pou></pous></types><instances/><addData>"
+          '<data name="http://www.3s-software.com/plcopenxml/globalvars"><globalVars name="G"><variable name="one"><type><INT/></type></variable>'
+          '<variable name="MOST"><type><INT/></type></variable><addData><data name="http://www.3s-software.com/plcopenxml/mixedattrsvarlist"><MixedAttrsVarList>'
+          + listed.format("", "one") + listed.format(' constant="true"', "MOST") + "</MixedAttrsVarList></data></addData></globalVars></data></addData></project>\n")
+    assert run("check", "mixed.xml").startswith("ok"), "a list with constants among its variables"
+    write("sysmac.xml", '<?xml version="1.0"?>\n<Project xmlns="www.iec.ch/public/TC65SC65BWG7TF10" schemaVersion="1"/>\n')
+    assert "this is XML of IEC 61131-10, which is not read" in run("check", "sysmac.xml", code=2)
+    write("old.il", "LD a\n")
+    assert "this is an instruction list, which is not read" in run("check", "old.il", code=2)
+
+
 def check_prefix():
     """Names with a prefix are those of its namespace."""
     plain = drawn(RUNG)
@@ -437,7 +496,7 @@ def check_headers():
             '<variable name="pulses"><type><INT/></type></variable></localVars></interface><body><ST><xhtml xmlns="http://www.w3.org/1999/xhtml">'
             "counter(CD := TRUE);\nsize := SIZEOF(text);\nfalls(CLK := FALSE);\nIF falls.Q THEN pulses := pulses + 1; END_IF;"
             "</xhtml></ST></body></pou></pous></types><instances><configurations/></instances></project>")
-    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (0, 255, 1))):
+    for product, value in (("CODESYS", (0, 81, 0)), ("Beremiz", (0, 127, 1))):
         write(f"{product}.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201">'
               f'<fileHeader companyName="" productName="{product}" productVersion="1" creationDateTime="2024-01-01T00:00:00"/>' + body)
         run("new", product, "--from", f"{product}.xml")
@@ -1025,6 +1084,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_configuration()
     check_chart_flags()
     check_older_forms()
+    check_binary_libraries()
+    check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
     check_neighbours()

@@ -75,7 +75,14 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
                                 "name it in the 'sources' of a program");
         return std::move(program_);
     }
-    if (lower(fs::path(file->path).extension().string()) == ".awl") {
+    const std::string ending = lower(fs::path(file->path).extension().string());
+    if (ending == ".il") {
+        read_.diagnostics().add(code::not_supported, {file, 1, 1, 1},
+                                "this is an instruction list, which is not read from a text",
+                                "export the project as PLCopen XML, where it is read");
+        return std::move(program_);
+    }
+    if (ending == ".awl") {
         read_.diagnostics().add(code::not_supported, {file, 1, 1, 1},
                                 "this is a source in STL (AWL) of STEP 7, which is not read",
                                 "write its blocks in SCL, LAD or FBD");

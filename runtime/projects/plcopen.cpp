@@ -23,6 +23,9 @@ bool is_of_codesys(const XmlFile& file) {
            file.text().find("CODESYS") != std::string_view::npos;
 }
 
+/// In the namespace of IEC 61131-10's XML, which Sysmac Studio writes.
+constexpr std::string_view of_standard = "TC65SC65BWG7TF10";
+
 /// One project of PLCopen XML.
 class PlcopenProject {
   public:
@@ -132,13 +135,18 @@ bool is_plcopen(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     stream.read(start.data(), static_cast<std::streamsize>(start.size()));
     std::erase(start, '\0');
-    return start.find("plcopen.org/xml/tc6") != std::string::npos;
+    return start.find("plcopen.org/xml/tc6") != std::string::npos ||
+           start.find(of_standard) != std::string::npos;
 }
 
 void read_plcopen(const Reading& to, const std::string& path, const Mark& where) {
     const auto file = XmlFile::read(path, to.out, where);
     if (!file) return;
     file->remove_prefix();
+    if (file->text().find(of_standard) != std::string_view::npos)
+        return to.out.add(code::not_supported, file->mark_of_tag(file->root()),
+                          "this is XML of IEC 61131-10, which is not read",
+                          "export PLCopen XML (TC6), or give its Structured Text");
     if (std::string_view(file->root().name()) != "project")
         return to.out.add(code::not_an_object, file->mark_of_tag(file->root()),
                           fmt::format("<{}> is no project of PLCopen XML", file->root().name()),

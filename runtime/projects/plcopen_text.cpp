@@ -90,7 +90,16 @@ void PlcopenText::add_inheritance(pugi::xml_node element) {
 void PlcopenText::add_interface(pugi::xml_node interface) {
     for (const pugi::xml_node section : interface.children())
         if (const std::string_view word = term_of(sections, section.name()); !word.empty())
-            add_section(section, word);
+            for (const pugi::xml_node list : lists_of(section)) add_section(list, word);
+}
+
+/// The lists of one that has variables of several kinds, as CODESYS writes it; else that one.
+std::vector<pugi::xml_node> PlcopenText::lists_of(pugi::xml_node section) {
+    std::vector<pugi::xml_node> lists;
+    for (const pugi::xml_node data : section.child("addData").children("data"))
+        for (const pugi::xml_node list : data.child("MixedAttrsVarList").children())
+            lists.push_back(list);
+    return lists.empty() ? std::vector{section} : lists;
 }
 
 void PlcopenText::add_section(pugi::xml_node section, std::string_view word) {
@@ -109,12 +118,17 @@ void PlcopenText::add_section(pugi::xml_node section, std::string_view word) {
     write("END_VAR\n", section);
 }
 
+/// `%QW0.1.0.0` names a point of a bus, which has no place in an image of bytes.
 void PlcopenText::add_variable(pugi::xml_node variable) {
     write("  ", variable);
     file_.copy(text_, variable.attribute("name"));
     if (const pugi::xml_attribute address = variable.attribute("address")) {
         write(" AT ", variable);
-        file_.copy(text_, address);
+        const std::string text = file_.plain(address);
+        if (is_of_matiec_ && std::ranges::count(text, '.') > 1)
+            write(fmt::format("{}*", text.substr(0, 2)), variable);
+        else
+            file_.copy(text_, address);
     }
     add_declared(variable, "type");
     write(";\n", variable);
@@ -129,8 +143,20 @@ void PlcopenText::add_declared(pugi::xml_node declared, const char* type) {
         add_type_of(declared.child(type), 0);
     if (const pugi::xml_node value = declared.child("initialValue")) {
         write(" := ", value);
+        const std::string_view quote = quote_of(declared.child(type), value.child("simpleValue"));
+        write(quote, value);
         add_value(value, 0);
+        write(quote, value);
     }
+}
+
+/// The editors of OpenPLC and Beremiz keep texts without those that they compile them with.
+std::string_view PlcopenText::quote_of(pugi::xml_node type, pugi::xml_node value) const {
+    const std::string kind = lower(std::string(first_element(type).name()));
+    const std::string_view quote = kind == "string" ? "'" : kind == "wstring" ? "\"" : "";
+    const std::string text = file_.plain(value.attribute("value"));
+    const bool has_quotes = text.starts_with(quote) || text.ends_with(quote);
+    return value && is_of_matiec_ && !has_quotes ? quote : "";
 }
 
 void PlcopenText::add_type_of(pugi::xml_node type, int depth) {
@@ -413,8 +439,10 @@ void PlcopenText::add_type(pugi::xml_node type) {
 
 void PlcopenText::add_globals(pugi::xml_node list) {
     if (add_plain(list)) return;
-    add_attributes(list);
-    add_section(list, "VAR_GLOBAL");
+    for (const pugi::xml_node part : lists_of(list)) {
+        add_attributes(list);
+        add_section(part, "VAR_GLOBAL");
+    }
 }
 
 }  // namespace lineshaft::projects

@@ -31,9 +31,11 @@ class PlcopenText {
     void add_attributes(pugi::xml_node element);
     void add_inheritance(pugi::xml_node element);
     void add_interface(pugi::xml_node interface);
+    static std::vector<pugi::xml_node> lists_of(pugi::xml_node section);
     void add_section(pugi::xml_node section, std::string_view word);
     void add_variable(pugi::xml_node variable);
     void add_declared(pugi::xml_node declared, const char* type);
+    std::string_view quote_of(pugi::xml_node type, pugi::xml_node value) const;
     void add_type_of(pugi::xml_node type, int depth);
     void add_array(pugi::xml_node array, int depth);
     void add_struct(pugi::xml_node structure, int depth);

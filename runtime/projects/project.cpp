@@ -21,6 +21,7 @@
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/yaml.hpp"
+#include "runtime/st/library/binary_libraries.hpp"
 #include "runtime/st/library/test_sources.hpp"
 
 namespace lineshaft::projects {
@@ -29,12 +30,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Beside the list of its files.
-bool is_of_br_library(const fs::path& file) {
+/// How the files of a library of B&R are read, by the list beside them; empty: it is none.
+std::string form_in_library(const fs::path& file) {
+    constexpr std::pair<const char*, std::string_view> lists[] = {
+        {"IEC.lby", ""},
+        {"ANSIC.lby", st::of_library_in_c},
+        {"Binary.lby", st::of_binary_library},
+        {"binary.lby", st::of_binary_library}};
     std::error_code unknown;
-    constexpr const char* lists[] = {"IEC.lby", "ANSIC.lby"};
-    return std::ranges::any_of(
-        lists, [&](const char* list) { return fs::exists(file.parent_path() / list, unknown); });
+    for (const auto& [list, form] : lists)
+        if (fs::exists(file.parent_path() / list, unknown)) return std::string(form) + ".fun";
+    return {};
 }
 
 void read_text(const Reading& to, const std::string& path, const Mark& where) {
@@ -42,9 +48,9 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     if (!source) return;
     read_configuration(to, source);
     read_organization_blocks(to, source);
-    if (is_of_br_library(path)) {
+    if (std::string form = form_in_library(path); !form.empty()) {
         SourceFile made = *source;
-        made.read_as = ".fun";
+        made.read_as = std::move(form);
         source = std::make_shared<const SourceFile>(std::move(made));
     }
     to.project.add(std::move(source));

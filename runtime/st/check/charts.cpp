@@ -1,8 +1,8 @@
 #include <utility>
 
+#include "runtime/st/check/chart_writer.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/names.hpp"
-#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -19,66 +19,6 @@ struct Qualifier {
 constexpr Qualifier qualifiers[] = {{"N", false},  {"S", false},  {"R", false}, {"P", false},
                                     {"P0", false}, {"P1", false}, {"L", true},  {"D", true},
                                     {"SD", true},  {"DS", true},  {"SL", true}};
-
-/// Writes what a chart does as statements, which are checked as those of a user.
-struct ChartWriter {
-    Checking& c;
-    Routine& routine;  ///< that has what the chart keeps
-    const Pou& pou;    ///< whose chart it is: the routine's, or one of its actions'
-    Block out = {};
-
-    Expression like(const Token& token) const { return {.token = token, .place = token.place}; }
-    /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
-    std::string_view part_name(std::string_view of, std::string_view part) {
-        return c.checked.names.emplace_back(fmt::format("{}{}.{}", within(), of, part));
-    }
-    std::string within() const {
-        return &pou == routine.pou ? std::string() : fmt::format("{}.", pou.name.text);
-    }
-    Expression* name(const Token& at, std::string_view text) {
-        return make_name(c, like(at), text);
-    }
-    Expression* active(const Token& step) { return make_member(c, name(step, step.text), "X"); }
-    Expression* next(const Token& step) { return make_member(c, name(step, step.text), "_X"); }
-    bool is_codesys() const { return pou.place.dialect().vendor == Vendor::codesys; }
-    Expression* kept(const Token& at, std::string_view of, std::string_view part) {
-        return name(at, part_name(of, part));
-    }
-    Expression* joined(Word op, Expression* a, Expression* b) {
-        return a ? make_binary(c, b->place, b->place, op, a, b) : b;
-    }
-    Expression* negated(Expression* value) { return make_not(c, value); }
-    Expression* truth(const Token& at, bool value) { return make_boolean(c, like(at), value); }
-    Statement* set(Expression* target, Expression* value) {
-        return make_assignment(c, target->place, target, value);
-    }
-    Statement* when(Expression* condition, Block then) {
-        return make_if(c, condition->place, condition, std::move(then), {});
-    }
-    /// `timer(IN := in, PT := preset);`
-    Statement* run(Expression* timer, Expression* in, Expression* preset) {
-        const auto named = [&](std::string_view text) {
-            return Token{.word = Word::name, .place = timer->place, .text = text};
-        };
-        std::vector<Argument> arguments = {{.name = named("in"), .value = in}};
-        if (preset) arguments.push_back({.name = named("pt"), .value = preset});
-        return make_call_statement(c, make_call(c, *timer, timer, std::move(arguments)));
-    }
-
-    Variable& declare(const Token& at, std::string_view text, const Type* type) {
-        Variable& made = c.make_variable(routine, at, text, type);
-        routine.names.emplace(text, &made);
-        depend(c, type, at.place);
-        return made;
-    }
-    /// Of an action's chart it is seen in the action alone.
-    Variable& declare_step(Routine& seen, const Token& at, const Type* type) {
-        const std::string_view full = c.checked.names.emplace_back(within() + std::string(at.text));
-        Variable& made = declare(at, full, type);
-        seen.names.emplace(at.text, &made);
-        return made;
-    }
-};
 
 void check_transitions(Checking& c, const Chart& chart) {
     std::vector<std::string> names;
@@ -140,29 +80,14 @@ bool check_association(Checking& c, const Routine& routine, const ChartAssociati
                   fmt::format("write ACTION {}: ... END_ACTION", a.action.text));
 }
 
-bool is(const ChartAssociation& a, std::string_view qualifier) {
-    return same_name(a.qualifier.word == Word::end_of_file ? "N" : a.qualifier.text, qualifier);
-}
-
-/// SD, DS and SL are stored each with a time of its own.
-bool is_stored_with_time(const ChartAssociation& a) {
-    return is(a, "SD") || is(a, "DS") || is(a, "SL");
-}
-
-/// One association of one action, and the number that what it keeps is known by.
-struct Use {
-    const ChartStep* step;
-    const ChartAssociation* association;
-    std::string_view kept = {};
-};
-
 /// Each action with its associations, in the order in which they are written.
-std::vector<std::pair<Token, std::vector<Use>>> actions_of(ChartWriter& w, const Chart& chart) {
-    std::vector<std::pair<Token, std::vector<Use>>> actions;
+std::vector<std::pair<Token, std::vector<ActionUse>>> actions_of(ChartWriter& w,
+                                                                 const Chart& chart) {
+    std::vector<std::pair<Token, std::vector<ActionUse>>> actions;
     for (const ChartStep& step : chart.steps)
         for (const ChartAssociation& a : step.associations) {
             auto* known = find_called(actions, a.action.text, [](auto& one) { return one.first; });
-            if (!known) known = &actions.emplace_back(a.action, std::vector<Use>());
+            if (!known) known = &actions.emplace_back(a.action, std::vector<ActionUse>());
             const std::string number = std::to_string(known->second.size() + 1);
             known->second.push_back({&step, &a, w.part_name(known->first.text, number)});
         }
@@ -255,7 +180,7 @@ Block write_conditions(ChartWriter& w, const Chart& chart) {
 }
 
 /// What the qualifier of one association asks for; null: nothing now.
-Expression* write_qualifier(ChartWriter& w, const Token& action, const Use& use) {
+Expression* write_qualifier(ChartWriter& w, const Token& action, const ActionUse& use) {
     const ChartAssociation& a = *use.association;
     const Token& at = a.action;
     const Token& step = use.step->name;
@@ -287,7 +212,7 @@ Expression* write_qualifier(ChartWriter& w, const Token& action, const Use& use)
 }
 
 /// P1 as the step begins, P0 as it ends: once, without a scan behind it.
-Expression* pulse_of(ChartWriter& w, const Use& use) {
+Expression* pulse_of(ChartWriter& w, const ActionUse& use) {
     const Token& step = use.step->name;
     Expression* before = w.kept(step, step.text, "before");
     if (is(*use.association, "P1")) return w.joined(Word::and_, w.active(step), w.negated(before));
@@ -301,14 +226,14 @@ std::string_view flag_of_action(ChartWriter& w, const Token& action) {
 }
 
 /// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
-void write_action(ChartWriter& w, const Token& action, const std::vector<Use>& uses) {
+void write_action(ChartWriter& w, const Token& action, const std::vector<ActionUse>& uses) {
     Expression* reset = w.truth(action, false);
-    for (const Use& use : uses)
+    for (const ActionUse& use : uses)
         if (is(*use.association, "R")) reset = w.joined(Word::or_, reset, w.active(use.step->name));
     const auto kept = [&](std::string_view part) { return w.kept(action, action.text, part); };
     w.out.push_back(w.set(kept("reset"), reset));
     Expression *asked = w.truth(action, false), *pulse = w.truth(action, false);
-    for (const Use& use : uses) {
+    for (const ActionUse& use : uses) {
         if (Expression* now = write_qualifier(w, action, use))
             asked = w.joined(Word::or_, asked, now);
         if (Expression* now = pulse_of(w, use)) pulse = w.joined(Word::or_, pulse, now);
@@ -345,9 +270,9 @@ Block restarted(ChartWriter& w, const Chart& chart) {
         made.push_back(w.set(w.name(at, fired_name(w, i)), w.truth(at, false)));
     }
     for (const auto& [action, uses] : actions_of(w, chart)) {
-        for (const std::string_view part : {"stored", "runs", "ran"})
+        for (const std::string_view part : {"stored", "runs", w.is_matiec() ? "set" : "ran"})
             made.push_back(w.set(w.kept(action, action.text, part), w.truth(action, false)));
-        for (const Use& use : uses)
+        for (const ActionUse& use : uses)
             if (is_stored_with_time(*use.association))
                 made.push_back(w.set(w.name(action, use.kept), w.truth(action, false)));
     }
@@ -441,15 +366,17 @@ void declare_chart(Checking& c, Routine& routine, Routine& seen) {
             variable.initial = list;
         }
         w.declare(at, w.part_name(at.text, "timer"), standard_type(c, "ton"));
-        w.declare(at, w.part_name(at.text, "before"), &bool_type);
+        Variable& before = w.declare(at, w.part_name(at.text, "before"), &bool_type);
+        if (w.is_matiec() && step.is_initial) before.initial = w.truth(at, true);
     }
     for (std::size_t i = 0; i < chart.transitions.size(); ++i)
         w.declare(chart.transitions[i].from.front(), fired_name(w, i), &bool_type);
     if (w.is_codesys()) declare_flags_of_actions(w, chart);
     for (const auto& [action, uses] : actions_of(w, chart)) {
-        for (const std::string_view part : {"stored", "reset", "runs", "ran"})
+        for (const std::string_view part :
+             {"stored", "reset", "runs", w.is_matiec() ? "set" : "ran"})
             w.declare(action, w.part_name(action.text, part), &bool_type);
-        for (const Use& use : uses) {
+        for (const ActionUse& use : uses) {
             if (!is_stored_with_time(*use.association)) continue;
             w.declare(action, use.kept, &bool_type);
             w.declare(action, w.part_name(use.kept, "timer"), standard_type(c, "ton"));
@@ -486,7 +413,8 @@ Block chart_statements(Checking& c, Routine& routine) {
     const Block change = write_conditions(w, chart);
     Block conditions = std::exchange(w.out, {});
     write_current_step(w, chart);
-    for (const auto& [action, uses] : actions_of(w, chart)) write_action(w, action, uses);
+    for (const auto& [action, uses] : actions_of(w, chart))
+        w.is_matiec() ? write_action_of_matiec(w, action, uses) : write_action(w, action, uses);
     for (const ChartStep& step : chart.steps)
         w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
     if (routine.pou->place.dialect().vendor == Vendor::codesys)

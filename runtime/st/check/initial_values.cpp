@@ -164,7 +164,7 @@ bool begins_property(Checking& c, Argument& argument, const Type& type) {
 /// TIA Portal: `((), (), 0.1)`, where a member keeps the start value of its type.
 bool is_left_open(Expression& value, const Type& type) {
     const bool has_several =
-        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
+        type.kind == Kind::structure || type.kind == Kind::array || type.is_instance();
     const bool is_open = value.kind == E::list && value.arguments.empty() && !has_several &&
                          value.is_structure() && value.place.dialect().packs_as_s7;
     if (is_open) value.type = &type;
@@ -206,7 +206,7 @@ void check_members(Checking& c, Expression& list, const Type& type) {
 /// `(0)`, which B&R and CODESYS 2.3 write for the initial values of what has several.
 bool is_nothing(const Expression& value, const Type& type) {
     const bool has_several =
-        type.kind == Kind::structure || type.kind == Kind::array || type.kind == Kind::block;
+        type.kind == Kind::structure || type.kind == Kind::array || type.is_instance();
     return has_several && value.kind == E::constant && value.token.text == "0";
 }
 

@@ -287,7 +287,8 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     Routine* getter = find_accessor(c, *e, Accessor::get);
     Variable* variable = is_text || getter ? nullptr : find_variable(c, token);
     if (!variable && !getter) variable = declare_program(c, token);
-    const bool is_due = (expected && expected->kind == Kind::text) || !may_be_name(token.text);
+    const bool takes_text = expected && (expected->kind == Kind::text || expected->is_character);
+    const bool is_due = takes_text || !may_be_name(token.text);
     const bool may_be_text =
         !variable && is_due && token.quoted && e->place.dialect().quotes_may_enclose_texts;
     if (is_text || may_be_text) {

@@ -120,6 +120,21 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
                    : convert_counted(w, slot, to, of_seconds, wanted);
 }
 
+/// A REAL, rounded: MatIEC has 0 below 0 where the number has no sign, and then the last bits.
+bool is_cut_by_matiec(const Expression& e) {
+    const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
+    const bool is_whole = to.is_integer() || (to.is_bits() && to.bits != from.bits);
+    return e.place.dialect().vendor == Vendor::matiec && from.is_real() && is_whole &&
+           !e.conversion.truncates;
+}
+
+Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
+    const bool has_sign = to.is_integer() && to.is_signed;
+    const Slot whole = w.emit(Op::round_lint, none, real);
+    const Slot cut = has_sign ? whole : w.emit(Op::max_signed, none, whole, w.constant_slot(0));
+    return to.bits == 64 ? cut : w.emit(of_type(Op::wrap_sint, to), wanted, cut);
+}
+
 /// Written in SCL, and not for the prelude's own use.
 bool is_of_s7(const Expression& e) {
     return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
@@ -255,6 +270,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (is_whole(e)) return whole_time(w, e, value(w, operand), wanted);
     const Type &given = operand.type->plain(), &to = e.type->plain();
     if (is_of_matiec(e)) return convert_seconds(w, value(w, operand), given, to, wanted);
+    if (is_cut_by_matiec(e)) return cut_by_matiec(w, value(w, operand), to, wanted);
     const bool in_days = counts_days(e);
     if (in_days || is_counted(e))
         return convert_counted(w, value(w, operand), to,

@@ -168,9 +168,11 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
     if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
     const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
     const Slot b = wide_value(w, *e.operands[1]);
-    return e.place.dialect().zero_divides_to_zero && may_be_divided_by_zero(e)
-               ? reckon_quotient(w, e, a, b)
-               : reckon(w, e, a, b, wanted);
+    const Dialect& dialect = e.place.dialect();
+    const bool is_zero_by_zero =
+        dialect.zero_divides_to_zero || (dialect.vendor == Vendor::matiec && e.op == Word::mod_);
+    return is_zero_by_zero && may_be_divided_by_zero(e) ? reckon_quotient(w, e, a, b)
+                                                        : reckon(w, e, a, b, wanted);
 }
 
 Slot bit(Writing& w, const Expression& e, Slot wanted) {

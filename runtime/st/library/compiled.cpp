@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/code/native/native.hpp"
+#include "runtime/st/library/binary_libraries.hpp"
 #include "runtime/st/library/coverage.hpp"
 #include "runtime/st/library/library_names.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
@@ -39,6 +40,8 @@ void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const So
     to.tree.leave_lost_out();
     join_declared_apart(to.tree);
     expand_generics(to.tree);
+    leave_out_declared(to.tree, standard);
+    warn_of_declared(to.tree, out);
     libraries.add_files(to.tree, out);
     if (uses_standard || libraries.use_standard_source())
         parse(read_tokens(standard_source(), out, SourceKind::prelude), to.tree, out);

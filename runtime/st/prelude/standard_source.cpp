@@ -28,13 +28,21 @@ NameSet names_of_prelude(std::initializer_list<std::string_view> kinds) {
     return names;
 }
 
+const NameSet& functions() {
+    static const NameSet names = names_of_prelude({"\nFUNCTION "});
+    return names;
+}
+
+const NameSet& types() {
+    static const NameSet names = names_of_prelude({"\nFUNCTION_BLOCK ", "\nTYPE "});
+    return names;
+}
+
 /// A function is called; a type is named.
 bool is_of_prelude(const Token& token, const Token& behind) {
-    static const NameSet functions = names_of_prelude({"\nFUNCTION "}),
-                         types = names_of_prelude({"\nFUNCTION_BLOCK ", "\nTYPE "});
     const bool is_name = token.word == Word::name || token.word == Word::prefix;
-    return is_name && (types.contains(token.text) ||
-                       (behind.word == Word::open && functions.contains(token.text)));
+    return is_name && (types().contains(token.text) ||
+                       (behind.word == Word::open && functions().contains(token.text)));
 }
 
 }  // namespace
@@ -49,6 +57,10 @@ bool uses_standard_source(const Tokens& tokens) {
     for (std::size_t i = 0; i + 1 < tokens.tokens.size(); ++i)
         if (is_of_prelude(tokens.tokens[i], tokens.tokens[i + 1])) return true;
     return false;
+}
+
+bool is_in_standard_source(std::string_view name) {
+    return functions().contains(name) || types().contains(name);
 }
 
 std::shared_ptr<const SourceFile> source_of(const BlockType& type) {

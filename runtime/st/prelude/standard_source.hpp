@@ -14,6 +14,9 @@ const std::shared_ptr<const SourceFile>& standard_source();
 /// A source has one of its names.
 bool uses_standard_source(const Tokens& tokens);
 
+/// A function or a type of it has that name.
+bool is_in_standard_source(std::string_view name);
+
 /// What a kind of the catalogue says in Structured Text.
 std::shared_ptr<const SourceFile> source_of(const BlockType& type);
 

@@ -71,7 +71,7 @@ const Dialect matiec = [] {
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.times_count_ms = false;
     made.most_aligned = iec.most_aligned;
-    made.text_length = iec.text_length;
+    made.text_length = 126;
     return made;
 }();
 

@@ -1,6 +1,7 @@
 #include "runtime/st/types/elementary.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -161,14 +162,17 @@ const Type* find_elementary(std::string_view name) {
 }
 
 const Type& unsized_string(const Dialect& dialect) {
-    static const Type shorter = text_type(codesys.text_length);
-    return dialect.text_length == shorter.length ? shorter : string_type;
+    static const Type shorter[] = {text_type(codesys.text_length), text_type(matiec.text_length)};
+    const auto* type = std::ranges::find(shorter, dialect.text_length, &Type::length);
+    return type == std::end(shorter) ? string_type : *type;
 }
 
 const Type& unsized_wide_string(const Place& place) {
-    static const Type shorter = text_type(codesys.text_length, false, true);
+    static const Type shorter[] = {text_type(codesys.text_length, false, true),
+                                   text_type(matiec.text_length, false, true)};
     if (!has_wide_texts(place)) return unsized_string(place.dialect());
-    return place.dialect().text_length == shorter.length ? shorter : wide_string_type;
+    const auto* type = std::ranges::find(shorter, place.dialect().text_length, &Type::length);
+    return type == std::end(shorter) ? wide_string_type : *type;
 }
 
 bool has_wide_texts(const Place& place) {

@@ -1,0 +1,127 @@
+#include "runtime/st/library/binary_libraries.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
+#include "runtime/st/functions/standard.hpp"
+#include "runtime/st/library/library_names.hpp"
+#include "runtime/st/prelude/standard_source.hpp"
+#include "runtime/st/types/elementary.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+std::string_view read_as(const Token& name) {
+    return name.place.source ? std::string_view(name.place.source->file->read_as) : "";
+}
+
+bool is_binary(const Token& name) {
+    return read_as(name).starts_with(of_binary_library);
+}
+
+bool is_declared(const Token& name) {
+    return is_binary(name) || read_as(name).starts_with(of_library_in_c);
+}
+
+/// The folder of its file.
+std::string library_of(const Token& name) {
+    return std::filesystem::path(name.place.source->file->path).parent_path().filename().string();
+}
+
+/// `REAL_TO_INT`.
+bool is_conversion(std::string_view name) {
+    constexpr std::string_view between = "_to_";
+    const std::string small = lower(std::string(name));
+    const std::size_t at = small.find(between);
+    return at != small.npos && find_elementary(name.substr(0, at)) &&
+           find_elementary(name.substr(at + between.size()));
+}
+
+/// B&R's commands of axes take ADR of a McAxisType, which is no axis here.
+bool takes_axis(const BlockType& kind, const Catalog& catalog) {
+    return std::ranges::any_of(kind.fields, [&](const Field& field) {
+        const BlockType* referred = catalog.find(field.refers);
+        return referred && !referred->handle.empty();
+    });
+}
+
+/// What lineshaft has of its own.
+class Known {
+  public:
+    explicit Known(const Catalog& catalog) : catalog_(catalog) {}
+
+    bool has(const Token& name) {
+        const BlockType* kind = find_called(catalog_.types(), name.text, &BlockType::name);
+        return (kind && !kind->is_device() && !takes_axis(*kind, catalog_)) ||
+               find_standard_function(name.text) || is_in_standard_source(name.text) ||
+               is_conversion(name.text) || names_in(library_of(name)).contains(name.text);
+    }
+
+  private:
+    const NameSet& names_in(const std::string& library) {
+        const auto [it, is_new] = libraries_.try_emplace(library);
+        if (!is_new) return it->second;
+        for (const LibraryFile& file : catalog_.libraries())
+            if (same_name(file.library, library))
+                for (const std::string_view name : LibraryNames::declared_in(file))
+                    it->second.insert(name);
+        return it->second;
+    }
+
+    const Catalog& catalog_;
+    std::map<std::string, NameSet> libraries_;
+};
+
+/// Names of types, functions and variables in sources that have bodies.
+NameSet used_names(const Tree& tree) {
+    NameSet used;
+    for (const TypeText& type : tree.type_texts)
+        if (!is_declared(type.name)) used.insert(type.name.text);
+    for (const Expression& e : tree.expressions)
+        if (e.kind == Expression::Kind::name && !is_declared(e.token)) used.insert(e.token.text);
+    return used;
+}
+
+bool is_empty(const Pou& unit) {
+    return unit.body.empty() && !unit.chart && unit.methods.empty();
+}
+
+}  // namespace
+
+void leave_out_declared(Tree& tree, const Catalog& catalog) {
+    Known known(catalog);
+    const auto is_here = [&](const Token& name) { return is_binary(name) && known.has(name); };
+    std::erase_if(tree.types, [&](const TypeDeclaration& type) { return is_here(type.name); });
+    std::erase_if(tree.units, [&](const Pou* unit) { return is_here(unit->name); });
+    for (DeclarationBlock& block : tree.globals)
+        std::erase_if(block.declarations,
+                      [&](const Declaration* variable) { return is_here(variable->name); });
+}
+
+void warn_of_declared(const Tree& tree, Diagnostics& out) {
+    std::map<std::string, std::vector<const Pou*>> libraries;
+    NameSet used;
+    for (const Pou* unit : tree.units) {
+        if (!is_declared(unit->name) || !is_empty(*unit)) continue;
+        if (used.empty()) used = used_names(tree);
+        if (used.contains(unit->name.text)) libraries[library_of(unit->name)].push_back(unit);
+    }
+    for (const auto& [library, units] : libraries) {
+        std::vector<std::string_view> names;
+        for (const Pou* unit : units) names.push_back(unit->name.text);
+        out.warn(code::not_supported, units.front()->name.place.mark(),
+                 fmt::format("of the library '{}' there are declarations alone, so this does "
+                             "nothing: {}",
+                             library, fmt::join(names, ", ")),
+                 "write what the program needs of it in Structured Text, without the declaration");
+    }
+}
+
+}  // namespace lineshaft::st
