@@ -190,6 +190,12 @@ std::string shown_name(const Routine& method) {
                                                    : "");
 }
 
+/// CODESYS, TwinCAT: what every block has without writing it.
+bool is_implicit(const Routine& method) {
+    constexpr std::string_view all[] = {"fb_init", "fb_exit", "fb_reinit"};
+    return method.pou->name.place.dialect().is_loose && find_called(all, method.pou->name.text);
+}
+
 void check_interfaces(Checking& c, Routine& block) {
     for (std::size_t i = 0; i < block.interfaces.size(); ++i) {
         std::vector<Routine*> wanted;
@@ -198,6 +204,7 @@ void check_interfaces(Checking& c, Routine& block) {
         for (Routine* method : wanted) {
             method->is_dispatched = true;
             Routine* found = find_method(block, *method);
+            if (!found && is_implicit(*method)) continue;
             if (!found) {
                 if (std::ranges::find(lacking, shown_name(*method)) == lacking.end())
                     lacking.push_back(shown_name(*method));
@@ -392,12 +399,17 @@ static void write_through(Checking& c, Statement*& s, const Type& type) {
     check(c, s);
 }
 
+/// `Space.Block` in `Space.Block.member := value;`; a variable's full name is none.
+static bool is_type_or_routine(Checking& c, const Expression& e) {
+    const auto full = e.kind == E::member ? qualified_name(c, e) : std::nullopt;
+    return full && !find_variable(c, *full);
+}
+
 bool rewrite_property(Checking& c, Statement*& s) {
     Expression* target = s->target;
     if (target->kind == E::member) {
         if (qualified_name(c, *target) || enumeration_of(c, *target)) return false;
-        if (target->operands[0]->kind == E::member && qualified_name(c, *target->operands[0]))
-            return false;
+        if (is_type_or_routine(c, *target->operands[0])) return false;
         if (refuse_member_of_namespace(c, *target)) return true;
         if (!check(c, target->operands[0])) return true;
     } else if (target->kind != E::name || target->variable) {
