@@ -26,10 +26,10 @@ namespace lineshaft::st {
 ///   - for a name that a taken file uses: of its own library, if that has it.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
-/// block that has nothing of what they name of theirs is not meant. Names of a library that is not
-/// open, and of helpers, which begin with a small letter, are not looked for, nor other names in
-/// SCL, nor what is the name of a variable everywhere. A library whose namespace the sources
-/// declare themselves is theirs.
+/// block that has nothing of what they name of theirs is not meant, nor SoftMotion's in a file of
+/// TwinCAT's. Names of a library that is not open, and of helpers, which begin with a small letter,
+/// are not looked for, nor other names in SCL, nor what is the name of a variable everywhere. A
+/// library whose namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
     explicit LibraryNames(const Catalog& catalog);
