@@ -23,6 +23,8 @@ Token parse_qualified_name(Parsing& p, std::string_view what);
 void parse_declaration(Parsing& p);
 Pou* parse_pou(Parsing& p);
 void parse_attributes(Parsing& p);
+/// The type behind ':', and what the result begins with.
+void parse_result(Parsing& p, Pou& pou);
 /// `said`: where to note it.
 bool accept_access(Parsing& p, Access* said = nullptr);
 
