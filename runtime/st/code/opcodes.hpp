@@ -98,7 +98,7 @@
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
     OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); if (!frames.find(at(a), U(b), c)) FAIL(no_end)) \
     OP(attempt, move, "wrn-", put(a, U(b) != 0 && frames.has(U(b), c) ? U(b) : 0))        \
-    OP(call_found, call, "rr--", CALL(U(a), U(b)))                                                        \
+    OP(call_found, call, "rr--", const std::uint64_t found = U(b); CALL(U(a), found))                \
     OP(push_frame, call, "wf--", if (!frames.push(at(a), b)) FAIL(calls_too_deep))                    \
     OP(save_frame, call, "-fr-", LINESHAFT_ST_SAVED(frames.save(b, U(c))))                            \
     OP(save_found, call, "-rr-", LINESHAFT_ST_SAVED(frames.save(U(b), U(c))))                         \
