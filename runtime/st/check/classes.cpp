@@ -8,10 +8,19 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/syntax/words.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 namespace {
+
+/// CODESYS, TwinCAT: what `EXTENDS TON` extends, which is a block of the library with its pins.
+Routine* find_extended(Checking& c, Token name) {
+    if (!name.place.dialect().is_loose) return nullptr;
+    name.text = c.checked.names.emplace_back(
+        fmt::format("{}{}", extended_blocks, without_library(name.text)));
+    return c.find_routine(name);
+}
 
 /// Null where there is none of that name, which was told.
 Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants_interface) {
@@ -20,6 +29,7 @@ Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants
     };
     Routine* found = c.find_routine(name);
     if (found && fits(*found)) return found;
+    if (Routine* extended = wants_interface ? nullptr : find_extended(c, name)) return extended;
     if (c.is_lost(name) || c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place))
         return nullptr;
     const std::string_view wanted = wants_interface ? "an interface" : "a function block";

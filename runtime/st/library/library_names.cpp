@@ -192,6 +192,14 @@ void LibraryNames::note(const Token& name) {
     if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
 }
 
+/// A block of the catalogue that another one extends.
+void LibraryNames::note_extended(const Token& name) {
+    if (!name.place.source || !name.place.dialect().is_loose) return;
+    const auto it =
+        index_.by_full_name.find(fmt::format("{}{}", extended_blocks, without_library(name.text)));
+    if (it != index_.by_full_name.end()) said_.insert(it->first);
+}
+
 void LibraryNames::note_names(const Tree& tree, bool are_users) {
     using E = Expression::Kind;
     std::optional<NameSet> variables;
@@ -207,7 +215,7 @@ void LibraryNames::note_names(const Tree& tree, bool are_users) {
     for (; types_ < tree.type_texts.size(); ++types_) note(tree.type_texts[types_].name);
     for (; pous_ < tree.pous.size(); ++pous_)
         for (const auto list : {&Pou::bases, &Pou::implemented})
-            for (const Token& name : tree.pous[pous_].*list) note(name);
+            for (const Token& name : tree.pous[pous_].*list) note(name), note_extended(name);
     for (; expressions_ < tree.expressions.size(); ++expressions_) {
         const Expression& e = tree.expressions[expressions_];
         const bool is_free = e.kind == E::name && !is_variable(e.token.text);

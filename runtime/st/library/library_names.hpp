@@ -18,6 +18,7 @@ namespace lineshaft::st {
 ///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
 ///     stands in a file of TwinCAT's and the library is one of its, or if the sources name pins of
 ///     it that the catalogue's block has not;
+///   - for `EXTENDS TON` and its like in CODESYS and TwinCAT: `extended_TON`;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
 ///   all;
@@ -49,6 +50,7 @@ class LibraryNames {
 
   private:
     void note(const Token& name);
+    void note_extended(const Token& name);
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
