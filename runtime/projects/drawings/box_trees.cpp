@@ -308,7 +308,7 @@ class BoxTrees {
     /// What a box is given is evaluated here.
     Box read_box(pugi::xml_node node) {
         Box box;
-        box.type = archive_.text(node, "BoxType");
+        box.type = function_of(archive_.text(node, "BoxType"));
         box.names = archive_.strings(Archive::member(node, "InputParam"), "Names");
         box.node = node;
         box.instance = archive_.text(Archive::member(node, "Instance"), "Operand");

@@ -39,7 +39,7 @@ bool is_eno(const Pin& pin) {
 }  // namespace
 
 std::string NetworkText::type_name_of(const Element& box) const {
-    return attribute(box, "typeName");
+    return function_of(attribute(box, "typeName"));
 }
 
 /// What CODESYS says that a box calls: `operator`, `function`, `functionblock`, `execute`, ...

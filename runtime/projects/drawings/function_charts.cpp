@@ -143,7 +143,7 @@ class FunctionChart {
         for (ChartPin& pin : item.inputs) pin.name = take();
         if (item.kind != Item::composer)
             for (ChartPin& pin : item.outputs) pin.name = take();
-        item.text = take();
+        item.text = function_of(take());
         item.instance = take();
     }
 

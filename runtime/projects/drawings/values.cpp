@@ -84,6 +84,15 @@ Value kept_in(Excerpts& to, const std::string& variable, const Value& value, con
     return words(variable, place, value.type);
 }
 
+std::string function_of(std::string_view box) {
+    static constexpr std::pair<std::string_view, std::string_view> all[] = {
+        {"+", "ADD"}, {"-", "SUB"}, {"*", "MUL"}, {"/", "DIV"}, {">", "GT"},    {">=", "GE"},
+        {"<", "LT"},  {"<=", "LE"}, {"=", "EQ"},  {"<>", "NE"}, {":=", "MOVE"}, {"&", "AND"}};
+    for (const auto& [sign, name] : all)
+        if (box == sign) return std::string(name);
+    return std::string(box);
+}
+
 std::string_view infix_of(std::string_view function) {
     static constexpr std::pair<std::string_view, std::string_view> all[] = {
         {"xor", " XOR "}, {"add", " + "},   {"sub", " - "}, {"mul", " * "},

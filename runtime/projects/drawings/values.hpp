@@ -36,6 +36,9 @@ void write_end_if(Excerpts& to, const Value& condition, const Mark& place);
 /// `variable := value;`, and the variable.
 Value kept_in(Excerpts& to, const std::string& variable, const Value& value, const Mark& place);
 
+/// The function that a box does: `SUB` where a sign, `-`, is its name; else that name.
+std::string function_of(std::string_view box);
+
 /// An operator that stands between its operands; empty: a function.
 std::string_view infix_of(std::string_view function);
 bool compares(std::string_view function);

@@ -8,10 +8,19 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/syntax/words.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
 namespace {
+
+/// CODESYS, TwinCAT: what `EXTENDS TON` extends, which is a block of the library with its pins.
+Routine* find_extended(Checking& c, Token name) {
+    if (!name.place.dialect().is_loose) return nullptr;
+    name.text = c.checked.names.emplace_back(
+        fmt::format("{}{}", extended_blocks, without_library(name.text)));
+    return c.find_routine(name);
+}
 
 /// Null where there is none of that name, which was told.
 Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants_interface) {
@@ -20,6 +29,7 @@ Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants
     };
     Routine* found = c.find_routine(name);
     if (found && fits(*found)) return found;
+    if (Routine* extended = wants_interface ? nullptr : find_extended(c, name)) return extended;
     if (c.is_lost(name) || c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place))
         return nullptr;
     const std::string_view wanted = wants_interface ? "an interface" : "a function block";
@@ -190,6 +200,12 @@ std::string shown_name(const Routine& method) {
                                                    : "");
 }
 
+/// CODESYS, TwinCAT: what every block has without writing it.
+bool is_implicit(const Routine& method) {
+    constexpr std::string_view all[] = {"fb_init", "fb_exit", "fb_reinit"};
+    return method.pou->name.place.dialect().is_loose && find_called(all, method.pou->name.text);
+}
+
 void check_interfaces(Checking& c, Routine& block) {
     for (std::size_t i = 0; i < block.interfaces.size(); ++i) {
         std::vector<Routine*> wanted;
@@ -198,6 +214,7 @@ void check_interfaces(Checking& c, Routine& block) {
         for (Routine* method : wanted) {
             method->is_dispatched = true;
             Routine* found = find_method(block, *method);
+            if (!found && is_implicit(*method)) continue;
             if (!found) {
                 if (std::ranges::find(lacking, shown_name(*method)) == lacking.end())
                     lacking.push_back(shown_name(*method));
@@ -392,13 +409,18 @@ static void write_through(Checking& c, Statement*& s, const Type& type) {
     check(c, s);
 }
 
+/// `Space.Block` in `Space.Block.member := value;`; a variable's full name is none.
+static bool is_type_or_routine(Checking& c, const Expression& e) {
+    const auto full = e.kind == E::member ? qualified_name(c, e) : std::nullopt;
+    return full && !find_variable(c, *full);
+}
+
 bool rewrite_property(Checking& c, Statement*& s) {
     Expression* target = s->target;
     if (target->kind == E::member) {
         name_block_of_list(c, *target);
         if (qualified_name(c, *target) || enumeration_of(c, *target)) return false;
-        if (target->operands[0]->kind == E::member && qualified_name(c, *target->operands[0]))
-            return false;
+        if (is_type_or_routine(c, *target->operands[0])) return false;
         if (refuse_member_of_namespace(c, *target)) return true;
         if (!check(c, target->operands[0])) return true;
     } else if (target->kind != E::name || target->variable) {

@@ -396,7 +396,9 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
     if (coerce_dtl(c, e, to)) return true;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
-    if (to.is_reference() || e->type->is_reference()) return coerce_reference(c, e, to);
+    const bool may_point = e->kind == E::self && (to.is_integer() || to.is_bits());
+    if (to.is_reference() || e->type->is_reference() || may_point)
+        return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
         const std::string& text = e->constant.text;

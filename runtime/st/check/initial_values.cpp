@@ -105,17 +105,18 @@ void check_repeated(Checking& c, Expression& repeated, Wide times, const Element
     }
 }
 
-/// CODESYS: `[COUNT(5)]`, so many times as a constant says.
-bool is_repeated_by_name(Checking& c, const Expression& e) {
+/// CODESYS: `[COUNT(5), (COUNT - 1)(6)]`, so many times as a constant says.
+bool is_repeated_by_constant(Checking& c, const Expression& e) {
     if (e.kind != E::call || !e.place.dialect().is_loose) return false;
     const Expression* count = e.operands[0];
+    if (count->kind == E::binary || count->kind == E::constant) return true;
     if (const auto name = count->kind == E::member ? qualified_name(c, *count) : std::nullopt)
         count = make_name(c, *count, name->text);
     const Variable* variable = count->kind == E::name ? find_variable(c, count->token) : nullptr;
     return variable && variable->space == Space::constant;
 }
 
-Expression* repeated_by_name(Checking& c, const Expression& call) {
+Expression* repeated_by_constant(Checking& c, const Expression& call) {
     Expression* made = make_copy(c, call);
     made->kind = E::repeated;
     return made;
@@ -127,8 +128,8 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
     const Wide room = elements.count();
     Wide count = 0;
     for (Argument& argument : list.arguments) {
-        if (is_repeated_by_name(c, *argument.value))
-            argument.value = repeated_by_name(c, *argument.value);
+        if (is_repeated_by_constant(c, *argument.value))
+            argument.value = repeated_by_constant(c, *argument.value);
         if (argument.value->kind != E::repeated) {
             check_element(c, argument.value, elements, count++);
             continue;

@@ -271,6 +271,21 @@ bool is_variable_for(Checking& c, const Token& token) {
     return !is_truth || !token.place.source || !token.place.dialect().is_loose;
 }
 
+/// The enumeration with the value that a variable of this block's, or of what it extends, has for
+/// itself: `state : (idle, busy);`.
+const Type* own_enumeration_with(Checking& c, const Token& token) {
+    if (token.local || token.quoted || !token.place.source || !token.place.dialect().is_loose)
+        return nullptr;
+    for (const Routine* r = c.routine; r; r = r->owner)
+        for (const Variable* variable : all_variables(*r)) {
+            const Type* type = variable->type;
+            while (type && type->kind == Kind::array) type = type->element;
+            const bool is_own = type && type->is_unnamed && type->has_values();
+            if (is_own && find_called(type->values, token.text)) return type;
+        }
+    return nullptr;
+}
+
 }  // namespace
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -323,6 +338,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         e->token.word = Word::direct;
         return check_direct(c, *e);
     }
+    if (const Type* own = own_enumeration_with(c, token)) return check_value(c, e, *own, token);
     return unknown_name(c, *e);
 }
 

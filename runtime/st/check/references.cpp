@@ -389,7 +389,14 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
     return coerce(c, left, type) && coerce(c, right, type) ? e->type = &bool_type : nullptr;
 }
 
+/// THIS where a pointer to something else, or a number for an address, is wanted.
+static bool points_at_own_instance(const Expression& e, const Type& to) {
+    const bool is_pointer = to.is_pointer() && to.element && !is_target(to, *e.type);
+    return e.kind == E::self && e.place.dialect().is_loose && (is_pointer || holds_address(to));
+}
+
 bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
+    if (points_at_own_instance(*e, to) && !refer(c, e, pointer_to(c, *e->type))) return false;
     const Type& from = *e->type;
     if (from.is_pointer() && &from != &null_type && holds_address(to)) {
         e = make_converted(c, e, to);

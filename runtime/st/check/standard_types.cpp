@@ -223,9 +223,18 @@ const Type* check_reals(Checking& c, Expression*& e, const Type* expected) {
     return coerce_from(c, call, 0, real) ? convert_result(c, e, real, result) : nullptr;
 }
 
+/// MIN, MAX and LIMIT of CODESYS take all types: what has an order is an enumeration's number.
+void take_numbers_of_enumerations(Checking& c, Expression& call) {
+    if (!call.place.dialect().enumerations_are_numbers) return;
+    for (Argument& argument : call.arguments)
+        if (argument.value->type->kind == Kind::enumeration && !argument.value->type->is_strict)
+            enumeration_becomes_number(c, argument.value);
+}
+
 const Type* check_common(Checking& c, Expression& call, const Type* expected) {
-    const Type* type = unite_from(c, call, 0, expected);
     const Generic result = call.standard->result;
+    if (result == Generic::any_ordered) take_numbers_of_enumerations(c, call);
+    const Type* type = unite_from(c, call, 0, expected);
     const bool suits = !type || result == Generic::any || type->is_number() || type->is_time() ||
                        (result == Generic::any_ordered && type->kind == Kind::bits);
     return suits ? type : refuse(c, call, "numbers", *type);

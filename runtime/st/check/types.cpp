@@ -152,7 +152,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     Type& type = c.make_type(Kind::enumeration, "enumeration");
     type.slots = 1;
     type.base = base;
-    type.has_numbers = true;
+    type.is_unnamed = type.has_numbers = true;
     NameMap<Place> names;
     std::int64_t number = 0;
     for (const Argument& value : text.values) {

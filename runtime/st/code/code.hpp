@@ -18,8 +18,8 @@
 
 namespace lineshaft::st {
 
-/// Characters that the result of a function of texts may have.
-inline constexpr std::int64_t longest_result = 254;
+/// Characters that the result of a function of texts may have; of CODESYS, TwinCAT: 255.
+inline constexpr std::int64_t longest_result = 254, longest_result_of_codesys = 255;
 
 struct Instruction {
     Op op = Op::leave;

@@ -206,10 +206,10 @@ bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
 bool is_too_long(const std::byte* text, std::uint64_t room);
 std::uint64_t length_of_text(const std::byte* text, bool in_units);
 
-/// Of `from` those characters from `first` (0) on, to a text that has room for `longest_result`;
+/// Of `from` those characters from `first` (0) on, to a text that has `room`;
 /// false where that cuts them short.
 bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
-                 bool in_units);
+                 std::uint32_t room);
 
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);

@@ -19,7 +19,7 @@ bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
 
 /// As `append_text`: first and count are of units.
 static bool append_units(std::byte* to, const std::byte* from, std::int64_t first,
-                         std::int64_t count) {
+                         std::int64_t count, std::uint32_t room) {
     const std::u16string units = units_of(text_at(from));
     const auto length = static_cast<std::int64_t>(units.size());
     first = std::clamp<std::int64_t>(first, 0, length);
@@ -28,7 +28,7 @@ static bool append_units(std::byte* to, const std::byte* from, std::int64_t firs
     const std::string text =
         std::string(text_at(to)) +
         text_of_units(std::u16string_view(units).substr(static_cast<std::size_t>(first), taken));
-    const std::size_t kept = kept_bytes(text, std::uint64_t{of_units} | longest_result);
+    const std::size_t kept = kept_bytes(text, room);
     std::memcpy(to + 8, text.data(), kept);
     set_word(to, 0, kept);
     return kept == text.size();
@@ -43,13 +43,13 @@ std::uint64_t length_of_text(const std::byte* text, bool in_units) {
 }
 
 bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
-                 bool in_units) {
-    if (in_units) return append_units(to, from, first, count);
+                 std::uint32_t room) {
+    if ((room & of_units) != 0) return append_units(to, from, first, count, room);
     const auto length = static_cast<std::int64_t>(word(from, 0));
     first = std::clamp<std::int64_t>(first, 0, length);
     count = std::clamp<std::int64_t>(count, 0, length - first);
     const auto before = static_cast<std::int64_t>(word(to, 0));
-    const auto taken = std::clamp<std::int64_t>(longest_result - before, 0, count);
+    const auto taken = std::clamp<std::int64_t>(room - before, 0, count);
     std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(taken));
     set_word(to, 0, static_cast<std::uint64_t>(before + taken));
     return taken == count;

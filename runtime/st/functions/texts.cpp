@@ -108,9 +108,9 @@ Slot emit_find(Emission& e) {
 }
 
 // clang-format off
-/// Characters are counted from 1. A text that is made has at most 254. In SCL MID, DELETE, INSERT
-/// and REPLACE give an empty text if P is 0 (INSERT: below 0) or below, or L is below 0, as TIA
-/// Portal's help says.
+/// Characters are counted from 1. A text that is made has at most 254, of CODESYS and
+/// TwinCAT 255. In SCL MID, DELETE, INSERT and REPLACE give an empty text if P is 0 (INSERT: below
+/// 0) or below, or L is below 0, as TIA Portal's help says.
 constexpr StandardFunction texts[] = {
     {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
      [](Emission& e) { return e.result(Op::text_length, e.text(0), e.is_wide()); }},

@@ -86,7 +86,10 @@ struct Call : Emission {
         const Slot range = w.new_temporary(2);
         w.put(Op::move, range, first);
         w.put(Op::move, range + 1, count);
-        w.put(Op::text_append, to, from, range, is_wide());
+        const bool is_codesys = call.place.dialect().vendor == Vendor::codesys;
+        const auto most =
+            static_cast<std::uint32_t>(is_codesys ? longest_result_of_codesys : longest_result);
+        w.put(Op::text_append, to, from, range, is_wide() ? most | of_units : most);
     }
     void reset_timer(std::size_t i) override { st::reset_timer(w, given(i)); }
 

@@ -10,8 +10,8 @@ namespace lineshaft::st {
 
 namespace {
 
-constexpr std::uint32_t result_slots = 1 + (longest_result + 7) / 8,
-                        wide_result_slots = 1 + (3 * longest_result + 7) / 8;
+constexpr std::uint32_t result_slots = 1 + (longest_result_of_codesys + 7) / 8,
+                        wide_result_slots = 1 + (3 * longest_result_of_codesys + 7) / 8;
 
 Slot constant_text(Writing& w, std::string_view text) {
     const auto first = static_cast<std::uint32_t>(w.constants.size());

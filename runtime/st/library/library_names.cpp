@@ -192,6 +192,14 @@ void LibraryNames::note(const Token& name) {
     if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
 }
 
+/// A block of the catalogue that another one extends.
+void LibraryNames::note_extended(const Token& name) {
+    if (!name.place.source || !name.place.dialect().is_loose) return;
+    const auto it =
+        index_.by_full_name.find(fmt::format("{}{}", extended_blocks, without_library(name.text)));
+    if (it != index_.by_full_name.end()) said_.insert(it->first);
+}
+
 void LibraryNames::note_names(const Tree& tree, bool are_users) {
     using E = Expression::Kind;
     std::optional<NameSet> variables;
@@ -207,7 +215,7 @@ void LibraryNames::note_names(const Tree& tree, bool are_users) {
     for (; types_ < tree.type_texts.size(); ++types_) note(tree.type_texts[types_].name);
     for (; pous_ < tree.pous.size(); ++pous_)
         for (const auto list : {&Pou::bases, &Pou::implemented})
-            for (const Token& name : tree.pous[pous_].*list) note(name);
+            for (const Token& name : tree.pous[pous_].*list) note(name), note_extended(name);
     for (; expressions_ < tree.expressions.size(); ++expressions_) {
         const Expression& e = tree.expressions[expressions_];
         const bool is_free = e.kind == E::name && !is_variable(e.token.text);
@@ -293,18 +301,22 @@ std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
 
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
     std::vector<const LibraryFile*> files = index_.by_name.at(name);
-    std::erase_if(files, [&](const LibraryFile* file) { return pins_of(*file, name) == 0; });
+    const bool in_twincat = of_twincat_.contains(name);
+    std::erase_if(files, [&](const LibraryFile* file) {
+        const bool is_softmotion = file->library.starts_with("SM3_");
+        return pins_of(*file, name) == 0 || (is_softmotion && in_twincat);
+    });
     if (files.empty()) return nullptr;
     const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name).value_or(0); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });
     const bool is_catalogs = index_.of_catalog.contains(name) && most <= pins_of_catalog(name);
     const auto is_of_twincat = [](const LibraryFile* f) { return f->library.starts_with("Tc2_"); };
-    if (of_twincat_.contains(name) && std::ranges::any_of(files, is_of_twincat))
+    if (in_twincat && std::ranges::any_of(files, is_of_twincat))
         std::erase_if(files, std::not_fn(is_of_twincat));
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
-    if (of_twincat_.contains(name) && is_of_twincat(files.front())) return files.front();
+    if (in_twincat && is_of_twincat(files.front())) return files.front();
     return is_catalogs ? nullptr : files.front();
 }
 

@@ -18,6 +18,7 @@ namespace lineshaft::st {
 ///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
 ///     stands in a file of TwinCAT's and the library is one of its, or if the sources name pins of
 ///     it that the catalogue's block has not;
+///   - for `EXTENDS TON` and its like in CODESYS and TwinCAT: `extended_TON`;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
 ///   all;
@@ -26,10 +27,10 @@ namespace lineshaft::st {
 ///   - for a name that a taken file uses: of its own library, if that has it.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
-/// block that has nothing of what they name of theirs is not meant. Names of a library that is not
-/// open, and of helpers, which begin with a small letter, are not looked for, nor other names in
-/// SCL, nor what is the name of a variable everywhere. A library whose namespace the sources
-/// declare themselves is theirs.
+/// block that has nothing of what they name of theirs is not meant, nor SoftMotion's in a file of
+/// TwinCAT's. Names of a library that is not open, and of helpers, which begin with a small letter,
+/// are not looked for, nor other names in SCL, nor what is the name of a variable everywhere. A
+/// library whose namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
     explicit LibraryNames(const Catalog& catalog);
@@ -49,6 +50,7 @@ class LibraryNames {
 
   private:
     void note(const Token& name);
+    void note_extended(const Token& name);
     void note_names(const Tree& tree, bool are_users);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);

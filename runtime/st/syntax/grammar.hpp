@@ -25,6 +25,8 @@ bool at_name_behind_point(const Parsing& p);
 void parse_declaration(Parsing& p);
 Pou* parse_pou(Parsing& p);
 void parse_attributes(Parsing& p);
+/// The type behind ':', and what the result begins with.
+void parse_result(Parsing& p, Pou& pou);
 /// `said`: where to note it.
 bool accept_access(Parsing& p, Access* said = nullptr);
 

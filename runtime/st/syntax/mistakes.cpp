@@ -12,6 +12,7 @@ namespace lineshaft::st {
 namespace {
 
 std::string another_name(const Cursor& p) {
+    if (p.here().place.source && p.here().place.dialect().is_loose) return "take another name";
     return fmt::format("take another name, or write it in quotes: \"{}\"", p.here().text);
 }
 

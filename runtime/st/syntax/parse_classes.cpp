@@ -19,6 +19,7 @@ void parse_name_list(Parsing& p, std::vector<Token>& to) {
 Pou& add_accessor(Parsing& p, const Pou& property, Accessor accessor) {
     Pou& pou = p.tree.pous.emplace_back(property);
     pou.accessor = accessor;
+    if (accessor == Accessor::set) pou.body.clear();
     if (accessor == Accessor::set && pou.result) {
         Declaration& value = p.tree.declarations.emplace_back();
         value.name = pou.name;
@@ -97,7 +98,7 @@ void parse_bases(Parsing& p, Pou& pou) {
              "let the other be an INTERFACE that it IMPLEMENTS, or a variable of it");
 }
 
-/// Prop_Decl : 'PROPERTY' Pou_Modifier * Name ':' Data_Type ';' ? Accessor * 'END_PROPERTY' ';' ?
+/// Prop_Decl : 'PROPERTY' Pou_Modifier * Name ':' Result ';' ? Accessor * 'END_PROPERTY' ';' ?
 /// In an INTERFACE one without accessors has both.
 void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     Pou property;
@@ -107,7 +108,7 @@ void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     parse_pou_modifiers(p, property);
     property.name = expect_name(p, "the name of the PROPERTY");
     property.place = opener.place.to(property.name.place);
-    if (expect(p, Word::colon, "before the property's type")) property.result = parse_type(p);
+    if (expect(p, Word::colon, "before the property's type")) parse_result(p, property);
     if (p.panic) skip_line(p);
     p.accept(Word::semicolon);
     if (of == PouKind::interface && p.is(Word::end_property_))

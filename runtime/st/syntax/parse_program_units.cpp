@@ -197,7 +197,7 @@ void parse_declaration(Parsing& p) {
     p.take();
 }
 
-/// POU : POU_Word Pou_Modifier * Name ( ':' Data_Type ';' ? ) ? POU_Header Var_Sections 'BEGIN' ?
+/// POU : POU_Word Pou_Modifier * Name ( ':' Result ';' ? ) ? POU_Header Var_Sections 'BEGIN' ?
 ///       POU_Body POU_End ';' ?
 /// POU_Word : 'PROGRAM' | 'ORGANIZATION_BLOCK' | 'FUNCTION_BLOCK' | 'FUNCTION' | 'DATA_BLOCK'
 ///          | 'CLASS' | 'INTERFACE' | 'METHOD'
@@ -218,7 +218,7 @@ Pou* parse_pou(Parsing& p) {
     pou.name = is_operator ? p.take()
                            : expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
     pou.place = opener.place.to(pou.name.place);
-    if (p.accept(Word::colon)) pou.result = parse_type(p);
+    if (p.accept(Word::colon)) parse_result(p, pou);
     if (p.panic) skip_line(p);
     if (pou.result) p.accept(Word::semicolon);
     parse_header(p, pou);
@@ -238,6 +238,18 @@ Pou* parse_pou(Parsing& p) {
     if (p.panic) skip_past(p, words.end);
     if (pou.is_generic) keep_generic(p, pou, first);
     return &pou;
+}
+
+/// Result : Data_Type ( ':=' Initial_Value ) ?
+/// What it begins with is assigned before the rest of the body, which an interface has none of.
+void parse_result(Parsing& p, Pou& pou) {
+    pou.result = parse_type(p);
+    if (p.panic || !p.source->dialect.is_loose || !p.is(Word::assign)) return;
+    Statement* first = p.make(Statement::Kind::assign, p.take());
+    first->target = p.make(Expression::Kind::name, pou.name);
+    first->value = parse_initial(p);
+    first->place = first->value->place;
+    pou.body.push_back(first);
 }
 
 /// Access_Spec : 'PRIVATE' | 'PUBLIC' | 'PROTECTED' | 'INTERNAL'

@@ -63,10 +63,10 @@ constexpr Renamed arguments[] = {{"in", " str "},
                                  {"l", " len "},
                                  {"p", " pos "}};
 
-constexpr std::string_view libraries[] = {"standard",     "standard64",     "tc2_standard",
-                                          "tc2_system",   "tc2_mc2",        "sm3_basic",
-                                          "sm3_robotics", "plcopen",        "system.math",
-                                          "system.timer", "system.strings", "system.datetime"};
+constexpr std::string_view libraries[] = {
+    "standard",       "standard64",      "tc2_standard", "tc2_system",  "tc2_mc2",
+    "sm3_basic",      "sm3_robotics",    "plcopen",      "system.math", "system.timer",
+    "system.strings", "system.datetime", "tc2_math"};
 
 constexpr AddedInput added_inputs[] = {{"StartMode"},       {"StopMode"},
                                        {"Restart"},         {"PositionControlled"},

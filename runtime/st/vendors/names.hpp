@@ -38,6 +38,9 @@ inline constexpr std::string_view siemens_motion = "Siemens.Simatic.S71500.Motio
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
 
+/// Of a block of the catalogue that another one of CODESYS or TwinCAT extends, before its name.
+inline constexpr std::string_view extended_blocks = "Standard.extended_";
+
 /// What Siemens' programs name by `"Axis_1"` without declaring it.
 inline constexpr std::string_view technology_object = "axis_ref";
 

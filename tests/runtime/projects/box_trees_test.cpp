@@ -156,6 +156,22 @@ TEST_CASE("trees of TwinCAT's networks are expressions, assignments and calls") 
                .takers = {operand("z", 0, "INT")}}))) == "\nz := LIMIT(x, y, 9);\nEND_PROGRAM\n");
 }
 
+TEST_CASE("a box of TwinCAT's networks may be named by the sign of its operator") {
+    const auto made = [](const std::string& type, const std::string& call) {
+        return text_of(network(
+            assign(box({.type = type,
+                        .call = call,
+                        .inputs = {leaf("1", 0, "INT"), leaf("x", 0, "INT"), leaf("y", 0, "INT")}}),
+                   {operand("z", 0, "INT")})));
+    };
+    CHECK(made("+", "Add") == "\nz := 1 + x + y;\nEND_PROGRAM\n");
+    CHECK(made("-", "Minus") == "\nz := 1 - x - y;\nEND_PROGRAM\n");
+    CHECK(text_of(network(assign(box({.type = "&lt;&gt;",
+                                      .call = "Ne",
+                                      .inputs = {leaf("x", 0, "INT"), leaf("y", 0, "INT")}}),
+                                 {operand("a")}))) == "\na := x <> y;\nEND_PROGRAM\n");
+}
+
 TEST_CASE("a wire of TwinCAT's networks has its value from where it is defined") {
     CHECK(text_of(network(wire(7, leaf("a")) + assign(wire(7), {operand("a", set | negated)}) +
                           assign(wire(7), {operand("b")}))) ==

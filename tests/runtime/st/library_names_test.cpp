@@ -141,6 +141,17 @@ TEST_CASE("what the catalogue has is a library's once that is taken", "[st][libr
               .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
 }
 
+TEST_CASE("a file of TwinCAT's takes nothing of SoftMotion for a name", "[st][libraries]") {
+    const std::string text =
+        "PROGRAM p VAR group : AXES_GROUP_REF; enable : MC_GroupEnable; "
+        "other : MC_SetCoordinateTransform; END_VAR\n"
+        "enable(AxesGroup := group, Execute := TRUE); END_PROGRAM\n";
+    const std::string in_twincat = compiled({file("a.TcPOU", text)});
+    CHECK(in_twincat.find("'MC_SetCoordinateTransform' is not a type") != std::string::npos);
+    CHECK(in_twincat.find("AxesGroup") == std::string::npos);
+    CHECK(compiled({file("a.EXP", text)}).find("called without 'AxisGroup'") != std::string::npos);
+}
+
 TEST_CASE("names that nobody has may be of libraries that are not here", "[st][libraries]") {
     const auto project = file("a.plcproj", "one\ntwo\n");
     const auto source = file("a.st",
