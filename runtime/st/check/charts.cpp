@@ -68,7 +68,7 @@ bool check_association(Checking& c, const Routine& routine, const ChartAssociati
         return c.fail(code::not_declared, q.place, fmt::format("'{}' is no qualifier", q.text),
                       "there are N, S, R, P, P0, P1, L, D, SD, DS and SL");
     if (known->has_time != (a.time != nullptr))
-        return c.fail(code::wrong_arguments, q.place,
+        return c.fail(code::wrong_arguments, q.place.source ? q.place : a.action.place,
                       fmt::format("{} takes {} time", known->name, known->has_time ? "a" : "no"),
                       known->has_time ? fmt::format("write ({}, T#1s)", known->name)
                                       : fmt::format("write ({})", known->name));

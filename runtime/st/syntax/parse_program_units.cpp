@@ -240,11 +240,11 @@ Pou* parse_pou(Parsing& p) {
     return &pou;
 }
 
-/// Result : Data_Type ( ':=' Initial_Value ) ?
+/// Result : Data_Type ( ':=' Init ) ?
 /// What it begins with is assigned before the rest of the body, which an interface has none of.
 void parse_result(Parsing& p, Pou& pou) {
     pou.result = parse_type(p);
-    if (p.panic || !p.source->dialect.is_loose || !p.is(Word::assign)) return;
+    if (p.panic || !p.is(Word::assign)) return;
     Statement* first = p.make(Statement::Kind::assign, p.take());
     first->target = p.make(Expression::Kind::name, pou.name);
     first->value = parse_initial(p);
