@@ -96,7 +96,7 @@
     OP(skip_loop_unsigned, jump, "rdj-", if (!is_within<std::uint64_t>(at(a), at(b))) GO(to))        \
     OP(call, call, "sf--", CALL(frames.address_of(a), b))                                            \
     OP(call_at, call, "rf--", CALL(U(a), b))                                                         \
-    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); if (!frames.find(at(a), U(b), c)) FAIL(no_end)) \
+    OP(find_routine, call, "wrn-", if (U(b) == 0) FAIL(no_reference); if (!frames.find(at(a), U(b), c)) FAIL(calls_too_deep)) \
     OP(attempt, move, "wrn-", put(a, U(b) != 0 && frames.has(U(b), c) ? U(b) : 0))        \
     OP(call_found, call, "rr--", const std::uint64_t found = U(b); CALL(U(a), found))                \
     OP(push_frame, call, "wf--", if (!frames.push(at(a), b)) FAIL(calls_too_deep))                    \
