@@ -912,7 +912,8 @@ def check_axes_of_lists():
     plcproj("lists/Lists.plcproj", "Lists", ["GVL_Feed.TcGVL", "GVL_Cut.TcGVL", "GVL_Saw.TcGVL", "MAIN.TcPOU", "PlcTask.TcTTO"])
     run("new", "lists", "--from", "lists")
     text = (work / "lists.yaml").read_text()
-    assert "  GVL_Feed_Axis: {type: axis" in text and "  GVL_Cut_Axis: {type: axis" in text and "  Blade: {type: axis" in text, text
+    for axis in ("GVL_Feed_Axis", "GVL_Cut_Axis", "Blade"):
+        assert re.search(rf"^  {axis}: {{type: axis, .*needs_power: true", text, re.M), text
     write("lists.yaml", text + "expect:\n  - {at: end, MAIN.x: 10, within: 1e-9}\n  - {at: end, MAIN.y: -20, within: 1e-9}\n"
           "  - {at: end, Blade.position: 5 mm, within: 1e-9 mm}\n")
     run("run", "lists.yaml", "--quiet")
