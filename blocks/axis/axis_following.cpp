@@ -130,14 +130,14 @@ void Axis::follow_law(const Context& context) {
     if (sync.stage == Stage::approaching) {
         follow_approach(context, leader, table);
         if (sync.stage == Stage::in_sync && table.periodic)
-            sync.last_periods = sync.period_from(sync.sync_x, sync.direction, table);
+            sync.enter_period(sync.period_from(sync.sync_x, sync.direction, table));
     }
     if (sync.stage == Stage::in_transition &&
         gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true)) {
         sync.stage = Stage::in_sync;
         if (table.periodic)
-            sync.last_periods =
-                table.periods(sync.coupling.master_scaling * sync.led.position + sync.cam_origin);
+            sync.enter_period(
+                table.periods(sync.coupling.master_scaling * sync.led.position + sync.cam_origin));
     }
     if (doing == Doing::following_axes && sync.stage == Stage::in_sync)
         follow_in_sync(context, leader, table);
@@ -215,13 +215,16 @@ void Axis::look_for_end(const Context& context, const MotionState& leader, const
     const double first = table.begin(), last = table.points.back().x;
     if (table.periodic) {
         const double periods = table.periods(x), before = sync.last_periods;
+        if (sync.period_is_open != 0) {
+            const double seam = first + table.length() * std::round((x - first) / table.length());
+            if (std::abs(x - seam) > slack) sync.enter_period(periods);
+            return;
+        }
         const double way = periods > before ? 1 : -1;
         const double end = first + table.length() * (way > 0 ? periods : periods + 1);
         const bool comes_from_there = way * scaling * leader.velocity < 0;
-        const bool is_at_end = std::abs(x - end) <= slack, begins = before != std::floor(before);
-        if (periods == before || ((comes_from_there || begins) && is_at_end)) return;
+        if (periods == before || (comes_from_there && std::abs(x - end) <= slack)) return;
         sync.last_periods = periods;
-        if (begins) return;
         return end_cam(context, leader, end, table.at(end));
     }
     CurvePoint behind = table.last();

@@ -35,9 +35,9 @@ MotionError sync_error(PlanResult result) {
 void find_end(SyncMotion& sync, const MotionState& leader, const Cam& table) {
     const double x = sync.coupling.master_scaling * leader.position + sync.cam_origin;
     sync.last_periods = sync.period_from(leader.position, sync.direction, table);
-    if (leader.velocity == 0)
-        sync.last_periods +=
-            0.5 * (sync.period_from(leader.position, -sync.direction, table) - sync.last_periods);
+    const bool has_other =
+        sync.period_from(leader.position, -sync.direction, table) != sync.last_periods;
+    sync.period_is_open = leader.velocity == 0 && has_other ? 1 : 0;
     sync.ends_at = x <= table.begin() ? 1 : x >= table.points.back().x ? -1 : 0;
     if (!table.periodic && sync.coupling.stays != 0)
         sync.last_periods = -static_cast<double>(sync.ends_at);

@@ -71,9 +71,10 @@ struct SyncMotion {
     // Of a law.
     double direction = 1;  ///< of the master, on its way to sync_x
     double sync_x = 0, sync_y = 0;
-    double cam_origin = 0;    ///< the cam's x is scaling * master + cam_origin
-    double cam_rise = 0;      ///< the slave is scaling * cam(x) + cam_rise
-    double last_periods = 0;  ///< of the cam, when it was looked at last
+    double cam_origin = 0;            ///< the cam's x is scaling * master + cam_origin
+    double cam_rise = 0;              ///< the slave is scaling * cam(x) + cam_rise
+    double last_periods = 0;          ///< of the cam, when it was looked at last
+    std::int64_t period_is_open = 0;  ///< at the seam of two, until the master moves
     std::int64_t ends_at =
         0;  ///< of a cam that is not periodic: 1 its end, -1 its beginning, 0 both
     std::int64_t finished = 0;  ///< it has been executed
@@ -111,6 +112,11 @@ struct SyncMotion {
 
     /// The law at the master's position x, of a cam by its table.
     CurvePoint law_at(double x, const Cam& cam) const;
+
+    void enter_period(double periods) {
+        last_periods = periods;
+        period_is_open = 0;
+    }
 
     /// The period of a cam that a master is in; where two meet, that in the direction of the
     /// master.

@@ -48,10 +48,13 @@ const Type* check_logic(Checking& c, Expression*& e) {
         return c.fail(code::type_does_not_fit, e->token.place,
                       fmt::format("{} takes two BOOL", shown(e->op)));
     // MatIEC makes && and || of them.
-    const bool is_shortened = e->place.dialect().vendor == Vendor::matiec &&
+    const bool is_shortened = (e->op == Word::and_ || e->op == Word::or_) &&
+                              e->place.dialect().vendor == Vendor::matiec &&
                               a.kind == Kind::boolean && b.kind == Kind::boolean;
-    if (is_shortened && e->op == Word::and_) e->op = Word::and_then_;
-    if (is_shortened && e->op == Word::or_) e->op = Word::or_else_;
+    if (is_shortened)
+        e = make_binary(c, e->place, e->token.place,
+                        e->op == Word::and_ ? Word::and_then_ : Word::or_else_, e->operands[0],
+                        e->operands[1]);
     e->type = unite(c, *e);
     if (e->type) fold(c, e);
     return e->type;
