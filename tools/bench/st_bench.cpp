@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -262,6 +263,48 @@ void empty_block(benchmark::State& state, Way way) {
 BENCHMARK_CAPTURE(empty_block, native, Way::native);
 BENCHMARK_CAPTURE(empty_block, compiled, Way::compiled);
 BENCHMARK_CAPTURE(empty_block, interpreted, Way::interpreted);
+
+// A method of an instance, called plainly and through an interface.
+constexpr const char* calls = R"(
+INTERFACE Adds
+METHOD Add : LREAL
+VAR_INPUT a : LREAL; END_VAR
+END_METHOD
+END_INTERFACE
+FUNCTION_BLOCK Plain
+VAR one : Sum; y : LREAL; i : DINT; END_VAR
+FOR i := 1 TO 1000 DO y := one.Add(a := 1.0); END_FOR;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Found
+VAR one : Sum; any : Adds; y : LREAL; i : DINT; END_VAR
+any := one;
+FOR i := 1 TO 1000 DO y := any.Add(a := 1.0); END_FOR;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Sum IMPLEMENTS Adds
+VAR s : LREAL; END_VAR
+METHOD Add : LREAL
+VAR_INPUT a : LREAL; END_VAR
+s := s * 0.5 + a;
+Add := s;
+END_METHOD
+END_FUNCTION_BLOCK
+)";
+
+void call(benchmark::State& state, std::string_view name) {
+    const auto library =
+        made(std::make_shared<const SourceFile>(SourceFile{"calls.st", calls}), Way::native);
+    const BlockType& kind = *std::ranges::find(library->kinds(), name, &BlockType::name);
+    std::vector<std::uint64_t> memory(kind.size / 8);
+    auto* block = reinterpret_cast<std::byte*>(memory.data());
+    kind.construct(block);
+    const Scan now;
+    const Context context{kind.context, nullptr};
+    Quickest least;
+    for (auto _ : state) least.time([&] { kind.scan_blocks(block, 1, now, context); });
+    least.count(state, 1000);
+}
+BENCHMARK_CAPTURE(call, plain, "Plain");
+BENCHMARK_CAPTURE(call, found, "Found");
 
 /// A multiply and an add after the other, the measure of the machine.
 void multiply_add(benchmark::State& state) {
