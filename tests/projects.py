@@ -343,6 +343,20 @@ def check_yaml_folder():
     assert "one/c.yaml:4:" in run("check", "one", code=2)
 
 
+def check_dialects():
+    """What a file in .st says by its text, by the option, and by the program that is written around it."""
+    source = "PROGRAM Main\nVAR a : ARRAY[3..REAL_TO_INT(2.5)] OF INT; END_VAR\nEND_PROGRAM\n"
+    write("said.st", source)
+    run("check", "said.st", code=2)
+    run("check", "said.st", "--source-dialect", "codesys")
+    assert "--source-dialect" in run("check", "said.st", "--source-dialect", "pascal", code=2)
+    run("new", "said", "--from", "said.st", "--source-dialect", "codesys")
+    assert "\ndialect: codesys\n" in (work / "said.yaml").read_text()
+    run("run", "said.yaml", "--quiet")
+    write("marked.st", "{attribute 'qualified_only'}\nVAR_GLOBAL g : INT; END_VAR\n" + source)
+    run("check", "marked.st")
+
+
 def check_neighbours():
     """Programs beside each other that share names: each is checked with what is nearest to it."""
     def export(name, program, text):
@@ -1089,6 +1103,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
+    check_dialects()
     check_neighbours()
     check_nothing()
     check_automation_studio()

@@ -9,9 +9,10 @@
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
-#include "runtime/projects/openplc.hpp"
+#include "runtime/projects/plain_text.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft {
 
@@ -104,7 +105,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     for (const std::string& text : options_.forces) force(text);
     for (const Node& source : program_.sources) note_project(source);
     for (const Node& source : program_.sources) find_source(source);
-    projects::read_as_neighbours(program_.texts);
+    settle_dialect();
     for (ReplayPlan& replay : program_.replays) find_file(replay);
     std::erase_if(program_.replays, [](const ReplayPlan& r) { return r.file.is_empty(); });
     for (const BlockPlan& block : program_.blocks) check_attached(block.task);
@@ -112,6 +113,14 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.root = std::move(*root);
     if (!options_.recording.empty()) recording();
     return std::move(program_);
+}
+
+/// What `--source-dialect` says is for sources that no program names.
+void ProgramReader::settle_dialect() {
+    const auto names = st::dialect_names();
+    const auto chosen = std::ranges::find(names, program_.dialect, &st::DialectName::name);
+    if (chosen == names.end()) projects::read_as_neighbours(program_.texts);
+    projects::read_plain_text_as(chosen == names.end() ? ".st" : chosen->ending, program_.texts);
 }
 
 /// A program that has changed may make something else of the same recording.

@@ -194,6 +194,7 @@ struct Program {
     std::vector<Node> sources;                             ///< files and folders of Structured Text
     std::vector<std::shared_ptr<const SourceFile>> texts;  ///< what they are
     bool sources_known = true;                             ///< false: not all could be read
+    std::string dialect;  ///< of those in `.st`, by its name; empty: the standard's, or MatIEC's
     bool overflow_faults = false;  ///< of an integer of Structured Text; else it wraps
     std::vector<std::pair<Node, Node>> inputs;
     std::vector<std::pair<Node, Node>> outputs;  ///< name and the signal it shows

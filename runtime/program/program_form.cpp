@@ -2,6 +2,7 @@
 
 #include "runtime/program/program.hpp"
 #include "runtime/program/program_parts.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft {
 
@@ -40,6 +41,12 @@ const Form& run_form() {
     return form;
 }
 
+std::vector<std::string_view> names_of_dialects() {
+    std::vector<std::string_view> names;
+    for (const st::DialectName& dialect : st::dialect_names()) names.push_back(dialect.name);
+    return names;
+}
+
 }  // namespace
 
 Key slow_key() {
@@ -76,6 +83,12 @@ const Form& program_form() {
                   "2.3 (.exp), "
                   "B&R (.typ, .var, .fun), or folders of them, relative "
                   "to this file: its programs and function blocks are types of blocks"),
+              key<&Program::dialect>(
+                  "dialect", one_of("a dialect of Structured Text", names_of_dialects()),
+                  "how sources in .st are read; the ending of all other files says it. CODESYS and "
+                  "TwinCAT round 2.5 to 3 and count TIME in whole ms, for instance, where the "
+                  "standard has 2 and ns")
+                  .by_default("iec"),
               key<&Program::overflow_faults>("overflow",
                                              one_of("what an overflow does", {"wrap", "fault"}),
                                              "what an integer of Structured Text does beyond its "

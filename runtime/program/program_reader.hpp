@@ -33,6 +33,7 @@ class ProgramReader {
     std::string namespace_of(const std::string& path);
     void read_source_file(const std::string& path, const Mark& mark);
     void force(const std::string& text);
+    void settle_dialect();
     void recording();
 
     const LoadOptions& options_;

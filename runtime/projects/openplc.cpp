@@ -357,22 +357,4 @@ void read_openplc_pou(const Reading& to, const std::string& path, const Mark& wh
     to.project.add(std::make_shared<const SourceFile>(std::move(made)));
 }
 
-void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources) {
-    const auto is_plain = [](const SourceFile& source) {
-        return source.read_as.empty() && has_ending(source.path, ".st");
-    };
-    std::set<fs::path> folders;
-    for (const auto& source : sources)
-        if (is_plain(*source) &&
-            st::dialect_of(source->path, source->text).vendor == st::Vendor::matiec)
-            folders.insert(fs::path(source->path).parent_path());
-    if (folders.empty()) return;
-    for (auto& source : sources) {
-        if (!is_plain(*source) || !folders.contains(fs::path(source->path).parent_path())) continue;
-        SourceFile made = *source;
-        made.read_as = ".matiec";
-        source = std::make_shared<const SourceFile>(std::move(made));
-    }
-}
-
 }  // namespace lineshaft::projects

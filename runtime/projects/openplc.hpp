@@ -19,8 +19,4 @@ void read_openplc_project(const Reading& to, const std::string& path, const Mark
 /// Declarations as text, `name : TYPE AT %IX0.0`, and behind them Structured Text, or a ladder.
 void read_openplc_pou(const Reading& to, const std::string& path, const Mark& where);
 
-/// Has the texts read as MatIEC's that stand in one folder with a text which is: its CONFIGURATION
-/// may be in another file than what it runs.
-void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources);
-
 }  // namespace lineshaft::projects

@@ -127,6 +127,7 @@ void add_check(CLI::App& app, Exit& result) {
            "them")
         ->required();
     add_strict(*sub, command->strict);
+    add_dialect(*sub);
     command->common.add_to(*sub);
     sub->callback([command, &result] { result = execute(*command); });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include <fmt/core.h>
@@ -12,6 +13,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/code/native/compile.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft {
 
@@ -80,6 +82,21 @@ LoadOptions CommonOptions::load_options(Diagnostics& out) const {
 
 void add_strict(CLI::App& command, bool& strict) {
     command.add_flag("--strict", strict, "Take warnings for errors");
+}
+
+void add_dialect(CLI::App& command) {
+    std::map<std::string, std::string_view> endings;
+    for (const st::DialectName& dialect : st::dialect_names())
+        endings.emplace(dialect.name, dialect.ending);
+    const auto take = [endings](const std::string& name) {
+        st::read_plain_text_as(endings.at(name));
+    };
+    command
+        .add_option_function<std::string>(
+            "--source-dialect", take,
+            "How files in .st are read, as programs say in 'dialect:'; else as the standard says")
+        ->check(CLI::IsMember(endings))
+        ->type_name("NAME");
 }
 
 void add_native(CLI::App& command) {

@@ -54,6 +54,9 @@ void add_strict(CLI::App& command, bool& strict);
 /// `--no-native`: Structured Text is interpreted; `--native`: it is compiled.
 void add_native(CLI::App& command);
 
+/// `--source-dialect`: how files in `.st` are read that no program names.
+void add_dialect(CLI::App& command);
+
 /// L0509 for each of `outputs` that is, by whatever name, a file which has been read so far or one
 /// of `inputs`, which are still to be read, or that is named twice; L0502 for a folder of theirs
 /// that is not there. Empty names are none.

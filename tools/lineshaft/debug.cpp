@@ -72,6 +72,7 @@ void add_options(CLI::App& app, DebugOptions& options) {
                    "Run this TEST of the program, which is a file of tests or a folder with some: "
                    "its name, or the beginning of it")
         ->type_name("NAME");
+    add_dialect(app);
     app.add_option("--record", options.record,
                    "Write what was changed by hand to this file, for --recording")
         ->type_name("FILE.yaml");

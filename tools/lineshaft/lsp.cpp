@@ -32,6 +32,7 @@ void add_lsp(CLI::App& app, Exit& result) {
         "lsp", "Serve an editor: the Language Server Protocol on the standard streams");
     sub->add_flag_callback(
         "--stdio", [] {}, "As it is anyway: some editors say so");
+    add_dialect(*sub);
     sub->callback([&result] { result = serve_editor(); });
 }
 

@@ -91,6 +91,7 @@ void add_new(CLI::App& app, Exit& result) {
                     "Write it around a project of another tool: TwinCAT (.plcproj), PLCopen XML, "
                     "sources, or a folder of them")
         ->type_name("PROJECT");
+    add_dialect(*sub);
     sub->add_flag("--quiet", command->quiet, "Print messages only");
     sub->callback([command, &result] { result = execute(*command); });
 }

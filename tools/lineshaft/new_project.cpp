@@ -14,6 +14,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/used_sources.hpp"
+#include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft {
 
@@ -365,6 +366,13 @@ std::string sources_text(const WholeProject& project, const std::filesystem::pat
     return text;
 }
 
+/// As `--source-dialect` says.
+std::string dialect_text() {
+    const auto names = st::dialect_names();
+    const auto chosen = std::ranges::find(names, st::plain_text_ending(), &st::DialectName::ending);
+    return chosen == names.begin() ? "" : fmt::format("dialect: {}\n", chosen->name);
+}
+
 }  // namespace
 
 std::string include_option(const std::string& project, const std::filesystem::path& program) {
@@ -409,8 +417,8 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "# Around a project of another tool. Try, and then change:\n"
         "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
         "#   lineshaft check {0}.yaml{1}\n"
-        "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}run: {{for: 1 s}}\n",
-        name, include_option(path, file), sources_text(*chosen, file),
+        "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}{4}run: {{for: 1 s}}\n",
+        name, include_option(path, file), sources_text(*chosen, file), dialect_text(),
         text_of(project, tasks, blocks) + inputs_text(addresses));
     std::vector<std::string> signals = motions_of(blocks);
     const bool moves = !signals.empty();

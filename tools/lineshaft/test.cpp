@@ -267,6 +267,7 @@ void add_test(CLI::App& app, Exit& result) {
     sub->add_option("--include-dir", command->options.include_dirs,
                     "Allow files below this folder, too")
         ->type_name("DIR");
+    add_dialect(*sub);
     sub->add_option("--source", command->sources,
                     "Look for what TESTs test in this file or folder, too")
         ->type_name("PATH");

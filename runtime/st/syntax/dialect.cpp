@@ -7,6 +7,8 @@
 
 namespace lineshaft::st {
 
+static constexpr std::string_view plain_text = ".st";
+
 const Dialect iec = {.sign_precedes_power = true,
                      .constants_have_values = true,
                      .quotes_may_enclose_texts = true,
@@ -101,6 +103,18 @@ static bool is_of_matiec(std::string_view text) {
     return named.starts_with("RESOURCE ") && named.rfind(' ') == named.find(' ');
 }
 
+/// `{attribute 'qualified_only'}`
+static bool is_of_codesys(std::string_view text) {
+    constexpr std::string_view word = "attribute '";
+    const auto opens = [&](std::size_t at) {
+        const std::size_t before = at == 0 ? text.npos : text.find_last_not_of(" \t", at - 1);
+        return before != text.npos && text[before] == '{';
+    };
+    std::size_t at = text.find(word);
+    while (at != text.npos && !opens(at)) at = text.find(word, at + 1);
+    return at != text.npos;
+}
+
 /// `%IX0.12`
 static bool has_bit_of_word(std::string_view text) {
     for (std::size_t at = text.find('%'); at != text.npos; at = text.find('%', at + 1)) {
@@ -119,26 +133,36 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
         std::string_view ending;
         const Dialect& dialect;
     };
-    static constexpr Ending endings[] = {{".st", iec},
-                                         {".typ", automation_studio},
-                                         {".var", automation_studio},
-                                         {".fun", automation_studio},
-                                         {".prg", automation_studio},
-                                         {".exp", codesys},
-                                         {".tcpou", twincat},
-                                         {".tcdut", twincat},
-                                         {".tcgvl", twincat},
-                                         {".tcio", twincat},
-                                         {".tctleo", twincat},
-                                         {".plcproj", twincat},
-                                         {".xml", codesys},
-                                         {".matiec", matiec}};
+    static constexpr Ending endings[] = {
+        {plain_text, iec},           {".typ", automation_studio}, {".var", automation_studio},
+        {".fun", automation_studio}, {".prg", automation_studio}, {".exp", codesys},
+        {".tcpou", twincat},         {".tcdut", twincat},         {".tcgvl", twincat},
+        {".tcio", twincat},          {".tctleo", twincat},        {".plcproj", twincat},
+        {".xml", codesys},           {".matiec", matiec}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
     if (it == std::end(endings)) return scl;
     if (&it->dialect == &iec && is_of_matiec(text)) return matiec;
+    if (&it->dialect == &iec && is_of_codesys(text)) return codesys;
     return &it->dialect == &codesys && has_bit_of_word(text) ? word_addressed : it->dialect;
+}
+
+std::span<const DialectName> dialect_names() {
+    static constexpr DialectName names[] = {{"iec", plain_text},           {"codesys", ".exp"},
+                                            {"twincat", ".tcpou"},         {"scl", ".scl"},
+                                            {"automation_studio", ".prg"}, {"matiec", ".matiec"}};
+    return names;
+}
+
+static std::string_view plain_text_is_read_as = plain_text;
+
+void read_plain_text_as(std::string_view ending) {
+    plain_text_is_read_as = ending;
+}
+
+std::string_view plain_text_ending() {
+    return plain_text_is_read_as;
 }
 
 }  // namespace lineshaft::st

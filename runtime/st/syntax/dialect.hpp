@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "runtime/model/address.hpp"
@@ -63,8 +64,22 @@ extern const Dialect iec, automation_studio, codesys, word_addressed, twincat, s
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
 /// `.prg` puts together are B&R's, `.EXP` and `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, all
-/// others SCL. A text in `.st` that has `RESOURCE x ON PLC`, as those tools write it, is MatIEC's;
-/// one in `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.
+/// others SCL. A text in `.st` that has `RESOURCE x ON PLC`, as those tools write it, is MatIEC's,
+/// one with `{attribute '...'}` CODESYS'; one in `.EXP` or `.xml` that has a bit above 7,
+/// `%IX0.12`, is of a word-addressed device.
 const Dialect& dialect_of(std::string_view path, std::string_view text = {});
+
+/// What users call a dialect, and the ending of a file's name that has it.
+struct DialectName {
+    std::string_view name, ending;
+};
+/// `iec`, `codesys`, `twincat`, `scl`, `automation_studio`, `matiec`.
+std::span<const DialectName> dialect_names();
+
+/// From now on users' files in `.st` of which SourceFile::read_as says nothing have the dialect of
+/// another ending, one of dialect_names(): by `--source-dialect`, for the whole process.
+void read_plain_text_as(std::string_view ending);
+/// That ending, `.st` at first.
+std::string_view plain_text_ending();
 
 }  // namespace lineshaft::st

@@ -476,12 +476,19 @@ class Lexer {
     Definitions defined_;            ///< by `{define}`
 };
 
+const Dialect& dialect_of_file(const SourceFile& file, SourceKind kind) {
+    if (kind == SourceKind::prelude) return scl;
+    const bool is_settled = file.read_as == ".st";  // whatever the text looks like
+    if (!file.read_as.empty()) return dialect_of(file.read_as, is_settled ? "" : file.text);
+    const Dialect& own = dialect_of(file.path, file.text);
+    return kind == SourceKind::library || &own != &iec ? own : dialect_of(plain_text_ending());
+}
+
 }  // namespace
 
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {
-    const std::string& named = file->read_as.empty() ? file->path : file->read_as;
-    const Dialect& dialect = kind == SourceKind::prelude ? scl : dialect_of(named, file->text);
+    const Dialect& dialect = dialect_of_file(*file, kind);
     return Lexer(std::make_shared<const Source>(Source{file, dialect, kind}), out).read();
 }
 

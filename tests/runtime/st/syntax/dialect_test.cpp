@@ -18,6 +18,8 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
     CHECK(written("CONFIGURATION Config0\r\n\r\n  RESOURCE Res0 ON PLC\r\n") == &st::matiec);
     CHECK(written("RESOURCE Cpu ON Controller // ON PLC") == &st::iec);
     CHECK(written("RESOURCE Cpu ON Controller\n// it runs ON PLC") == &st::iec);
+    CHECK(written("{ attribute 'qualified_only'}\nVAR_GLOBAL") == &st::codesys);
+    CHECK(written("// no attribute 'strict' here\n") == &st::iec);
     for (const char* path : {"plc.EXP", "plc.xml"}) CHECK(&st::dialect_of(path) == &st::codesys);
     CHECK(&st::dialect_of("plc.EXP", "lamp AT %QX0.12 : BOOL;") == &st::word_addressed);
     CHECK(&st::dialect_of("plc.EXP", "%QX0.7 %QW0 %IX10.3 'of 10% X0.12'") == &st::codesys);
@@ -38,4 +40,25 @@ TEST_CASE("Structured Text: a source is of the prelude by who reads it, not by i
     CHECK(prelude.source->is_prelude());
     CHECK(&prelude.tokens[0].place.dialect() == &st::scl);
     CHECK(prelude.tokens[0].place.source == prelude.source.get());
+}
+
+TEST_CASE("Structured Text: a dialect is named for what the ending .st does not say", "[st]") {
+    const auto dialect = [](std::string read_as, st::SourceKind kind) {
+        const SourceFile file{.path = "a.st", .text = "END", .read_as = std::move(read_as)};
+        Diagnostics out;
+        const auto read = st::read_tokens(std::make_shared<const SourceFile>(file), out, kind);
+        return &read.tokens[0].place.dialect();
+    };
+    using enum st::SourceKind;
+    for (const auto& [name, ending] : st::dialect_names()) {
+        CAPTURE(name);
+        const st::Dialect* const own = &st::dialect_of(ending);
+        CHECK(dialect(std::string(ending), program) == own);
+        st::read_plain_text_as(ending);
+        CHECK(dialect("", program) == own);
+        CHECK(dialect("", tests) == own);
+        CHECK(dialect(".scl", program) == &st::scl);
+        CHECK(dialect("", library) == &st::iec);
+        st::read_plain_text_as(".st");
+    }
 }

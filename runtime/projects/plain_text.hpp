@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "runtime/source/diagnostic.hpp"
+
+namespace lineshaft::projects {
+
+/// Has the texts in `.st` read as MatIEC's, or CODESYS', that stand in one folder with a text which
+/// is: what shows it may be in another file, as a CONFIGURATION or a list of globals.
+void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources);
+
+/// Has all texts in `.st` read as those whose names have another ending.
+void read_plain_text_as(std::string_view ending,
+                        std::vector<std::shared_ptr<const SourceFile>>& sources);
+
+}  // namespace lineshaft::projects
