@@ -30,6 +30,12 @@ void parse_result(Parsing& p, Pou& pou);
 /// `said`: where to note it.
 bool accept_access(Parsing& p, Access* said = nullptr);
 
+// parse_bare_program.cpp
+/// Statements stand here, or behind the variables that do, with no PROGRAM around them: before all
+/// units of the source, and behind nothing that is wrong.
+bool at_bare_program(Parsing& p);
+void parse_bare_program(Parsing& p);
+
 // parse_classes.cpp
 void parse_pou_modifiers(Parsing& p, Pou& pou);
 /// EXTENDS and IMPLEMENTS.

@@ -51,6 +51,7 @@ std::string habit(const Parsing& p) {
     if (std::string of_signs = habit_of_signs(p); !of_signs.empty()) return of_signs;
     if (p.is_in_body && p.is_name() && find_called(elementary_names, p.last().text))
         return "variables are declared in VAR ... END_VAR";
+    if (p.says("var_constant")) return "write VAR CONSTANT";
     if (p.is(Word::assign) && !p.is_in_body)
         return "statements stand in a PROGRAM, FUNCTION_BLOCK or FUNCTION";
     const bool is_reserved = !p.is_name() && p.here().word < Word::end_of_file;

@@ -170,7 +170,8 @@ std::string_view name_of_list(const Source& source) {
     return name.substr(0, name.rfind('.'));
 }
 
-/// Declaration : POU | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl | Var_Config | Test
+/// Declaration : POU | Bare_Program | Action_Decl | Data_Type_Decl | Var_Section | Config_Decl
+///             | Var_Config | Test
 /// A METHOD stands within another unit, or behind it; variables beside units are VAR_GLOBAL or VAR,
 /// which is the same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
@@ -181,6 +182,7 @@ void parse_declaration(Parsing& p) {
         return is_of_language(p, *pou) ? void() : p.tree.units.push_back(pou);
     }
     if (p.is(Word::type_)) return parse_type_declarations(p);
+    if (at_bare_program(p)) return parse_bare_program(p);
     if (p.is(Word::var_global_) || p.is(Word::var_)) return parse_globals(p);
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (p.at_action()) return parse_action_beside(p);

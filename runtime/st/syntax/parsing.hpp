@@ -23,8 +23,10 @@ struct Parsing : Cursor {
     bool is_in_body = false;           ///< of a POU
     bool is_in_test = false;           ///< in its body
     bool is_wrong = false;             ///< what is being declared
+    bool was_wrong = false;            ///< something before it
     bool is_spoiled = false;           ///< the POU, by a variable that cannot be
     bool section_left = false;         ///< a VAR ended without END_VAR
+    std::size_t sections_until = 0;    ///< no statement of a bare program stands before
     std::vector<Place> else_ifs = {};  ///< `ELSE IF` within the IFs that are open
     std::size_t unclosed_at = static_cast<std::size_t>(-1);  ///< where an end was missed last
 

@@ -38,6 +38,11 @@ bool at_end_of_block(const Cursor& p) {
            p.at_action() || (p.is(Word::type_) && p.is_name(1));
 }
 
+/// What stands here is beside units, never within one.
+bool at_unit(const Cursor& p) {
+    return p.at_pou() && !p.at_method() && p.here().first_in_line;
+}
+
 /// What stands here cannot be within a block, whose end is missing.
 bool is_left(const Parsing& p) {
     return at_end_of_block(p) || at_label_of_case(p);
@@ -117,10 +122,11 @@ bool close(Parsing& p, Word end, const Token& opener) {
     }
     p.unclosed_at = p.at;
     if (p.is(Word::end_of_file) && is_swallowed(p)) return false;
-    if (p.is(Word::end_of_file) && find_pou(opener.word)) {
+    if (find_pou(opener.word) && (p.is(Word::end_of_file) || at_unit(p))) {
         p.out.warn(code::something_else_expected, opener.place.mark(),
                    fmt::format("this {} has no {}", shown(opener.word), shown(end)),
-                   "it ends with the file");
+                   p.is(Word::end_of_file) ? std::string("it ends with the file")
+                                           : fmt::format("it ends before {}", found(p)));
         return true;
     }
     if (!p.else_ifs.empty() && end == Word::end_if_) {
@@ -242,6 +248,7 @@ void lose_if_wrong(Parsing& p, void (*read)(Parsing&)) {
     const std::uint32_t end = p.here().place.begin;
     const auto is_within = [&](std::uint32_t at) { return at >= begin && at < end; };
     if (!p.is_wrong && std::ranges::none_of(p.mistakes, is_within)) return;
+    p.was_wrong = true;
     for (std::size_t i = types; i < p.tree.types.size(); ++i) p.tree.types[i].is_lost = true;
     for (std::size_t i = units; i < p.tree.units.size(); ++i) p.tree.units[i]->is_lost = true;
     for (std::size_t i = globals; i < p.tree.globals.size(); ++i) p.tree.globals[i].is_lost = true;
