@@ -146,7 +146,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
     const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
     const Dialect& dialect = value->place.dialect();
-    const bool is_kept = (dialect.reckons_wide && from.is_integer()) ||
+    const bool is_kept = (dialect.reckons_in > from.bits && from.is_integer()) ||
                          (dialect.times_count_ms && from.counts_ns != target->counts_ns);
     if (are_texts ||
         (same_type(from, *target) && from.is_character == target->is_character && !is_kept)) {

@@ -240,6 +240,18 @@ const Type* check_common(Checking& c, Expression& call, const Type* expected) {
     return suits ? type : refuse(c, call, "numbers", *type);
 }
 
+/// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with. One
+/// that stands for UPPER_BOUND of a dimension that is none stays a fault.
+void choose_of_others(Checking& c, Expression& call, const Type* type) {
+    const Vendor vendor = call.place.dialect().vendor;
+    const bool is_written = same_name(call.operands[0]->place.text(), "mux");
+    if (!type || !is_written || same_name(call.arguments.back().name.text, "inelse")) return;
+    if (vendor == Vendor::matiec && (type->is_scalar() || type->kind == Kind::text))
+        call.arguments.push_back({{}, false, make_constant(c, call, *type, {}), nullptr});
+    if (vendor == Vendor::codesys || vendor == Vendor::matiec)
+        call.arguments.back().name.text = "inelse";
+}
+
 const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
     Expression*& choice = call.arguments[0].value;
     if (call.standard->parameters[0].type == Generic::boolean)
@@ -248,7 +260,9 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
     if (choice->type->is_any() && !coerce(c, choice, lint_type)) return nullptr;
     if (choice->type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
-    return unite_from(c, call, 1, expected);
+    const Type* type = unite_from(c, call, 1, expected);
+    choose_of_others(c, call, type);
+    return type;
 }
 
 constexpr const char* write_its_type = "write its type, as in WORD#16#FF";

@@ -241,11 +241,18 @@ std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_unit
 template <class T>
 void write_number(std::byte* to, T value, bool has_sign = false);
 
-/// `is_rounded`: of 7 or 15 digits with a point, '12.0', and from 10^6 or 10^14 on and below 10^-4
-/// with an exponent, '1.5E20', as CODESYS and TwinCAT write it; else the shortest that reads back
-/// as the same.
+/// How a real number becomes a text.
+enum class RealForm : std::uint8_t {
+    shortest,  ///< that reads back as the same
+    rounded,  ///< of 7 or 15 digits with a point, '12.0', and from 10^6 or 10^14 on and below 10^-4
+              ///< with an exponent, '1.5E20', as CODESYS and TwinCAT write it
+    exponent,  ///< of 7 or 14 digits with signs, '+1.500000E+20', as Siemens writes it
+};
+constexpr RealForm real_form(std::uint32_t operand) {
+    return static_cast<RealForm>(operand);
+}
 template <class T>
-void write_real(std::byte* to, T value, bool is_rounded);
+void write_real(std::byte* to, T value, RealForm form);
 
 /// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
 /// whole number may be `16#FF`, and where digits may stand in groups `2#1111_0000`.

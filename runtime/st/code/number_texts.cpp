@@ -45,17 +45,41 @@ char* write_with_point(char* out, std::string_view digits, int before) {
     return out;
 }
 
+/// `d.ddd` times 10 to the power `exponent`.
+struct Scientific {
+    template <class T>
+    Scientific(T value, int digits) {
+        const char* end = std::to_chars(room.data(), room.data() + room.size(), std::abs(value),
+                                        std::chars_format::scientific, digits - 1)
+                              .ptr;
+        const char* letter = std::find(std::as_const(room).data(), end, 'e');
+        number = {room.data(), static_cast<std::size_t>(letter - room.data())};
+        std::from_chars(letter + (letter[1] == '+' ? 2 : 1), end, exponent);
+    }
+    std::array<char, 32> room{};
+    std::string_view number;
+    int exponent = 0;
+};
+
+template <class T>
+void write_exponent(std::byte* to, T value) {
+    const Scientific parts(value, std::is_same_v<T, float> ? 7 : 14);
+    char* const first = reinterpret_cast<char*>(to + 8);
+    char* out = first;
+    *out++ = std::signbit(value) ? '-' : '+';
+    out = std::ranges::copy(parts.number, out).out;
+    *out++ = 'E';
+    if (parts.exponent >= 0) *out++ = '+';
+    out = std::to_chars(out, out + parts.room.size(), parts.exponent).ptr;
+    set_word(to, 0, static_cast<std::uint64_t>(out - first));
+}
+
 template <class T>
 void write_rounded(std::byte* to, T value) {
-    std::array<char, 32> room{};
-    const char* end = std::to_chars(room.data(), room.data() + room.size(), std::abs(value),
-                                    std::chars_format::scientific, shown_digits<T> - 1)
-                          .ptr;
-    const char* letter = std::find(std::as_const(room).data(), end, 'e');
-    int exponent = 0;
-    std::from_chars(letter + (letter[1] == '+' ? 2 : 1), end, exponent);
-    room[1] = room[0];
-    std::string_view digits(room.data() + 1, static_cast<std::size_t>(letter - room.data()) - 1);
+    Scientific parts(value, shown_digits<T>);
+    const int exponent = parts.exponent;
+    parts.room[1] = parts.room[0];  // without the point
+    std::string_view digits = parts.number.substr(1);
     digits = digits.substr(0, std::max<std::size_t>(digits.find_last_not_of('0') + 1, 1));
     const bool is_plain = exponent >= -4 && exponent < longest_plain<T>;
     char* const first = reinterpret_cast<char*>(to + 8);
@@ -64,7 +88,7 @@ void write_rounded(std::byte* to, T value) {
     out = write_with_point(out, digits, is_plain ? exponent + 1 : 1);
     if (!is_plain) {
         *out++ = 'E';
-        out = std::to_chars(out, out + room.size(), exponent).ptr;
+        out = std::to_chars(out, out + parts.room.size(), exponent).ptr;
     }
     set_word(to, 0, static_cast<std::uint64_t>(out - first));
 }
@@ -72,8 +96,9 @@ void write_rounded(std::byte* to, T value) {
 }  // namespace
 
 template <class T>
-void write_real(std::byte* to, T value, bool is_rounded) {
-    is_rounded&& std::isfinite(value) ? write_rounded(to, value) : write_number(to, value, false);
+void write_real(std::byte* to, T value, RealForm form) {
+    if (form == RealForm::shortest || !std::isfinite(value)) return write_number(to, value, false);
+    form == RealForm::rounded ? write_rounded(to, value) : write_exponent(to, value);
 }
 
 namespace {
@@ -154,8 +179,8 @@ double s7_real_of_text(const std::byte* from) {
 
 template void write_number(std::byte*, std::int64_t, bool);
 template void write_number(std::byte*, std::uint64_t, bool);
-template void write_real(std::byte*, double, bool);
-template void write_real(std::byte*, float, bool);
+template void write_real(std::byte*, double, RealForm);
+template void write_real(std::byte*, float, RealForm);
 template std::uint64_t number_of_text(const std::byte*, bool);
 template double number_of_text(const std::byte*, bool);
 

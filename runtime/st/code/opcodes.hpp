@@ -188,8 +188,8 @@
     OP(text_find, text, "wrrn", put(a, find_text(target(U(b)), target(U(c)), d != 0)))               \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
-    OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), c != 0))                           \
-    OP(text_of_float, text, "rrn-", write_real(target(U(a)), static_cast<float>(R(b)), c != 0))      \
+    OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), real_form(c)))                     \
+    OP(text_of_float, text, "rrn-", write_real(target(U(a)), static_cast<float>(R(b)), real_form(c))) \
     OP(integer_of_text, text, "wrn-", put(a, number_of_text<std::uint64_t>(target(U(b)), c != 0)))    \
     OP(real_of_text, text, "wrn-", put(a, number_of_text<double>(target(U(b)), c != 0)))             \
     OP(s7_integer_of_text, text, "wrnn", put(a, s7_integer_of_text(target(U(b)), c, d != 0)))         \

@@ -112,7 +112,8 @@ constexpr StandardFunction numbers[] = {
      Typing::common, emit_limit},
     {"SEL(G: BOOL; IN0, IN1: ANY): ANY", "IN1 if G, else IN0", Typing::chosen, emit_select},
     {"MUX(K: ANY_INT; IN0, ...: ANY): ANY",
-     "the argument of number K, from 0 on; of another number that of INELSE, or a fault",
+     "the argument of number K, from 0 on; of another number that of INELSE, else a fault, in CODESYS "
+     "the last, in MatIEC what the type begins with",
      Typing::chosen, emit_multiplex},
 };
 // clang-format on

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
@@ -20,6 +21,11 @@ Slot constant_text(Writing& w, std::string_view text) {
     std::ranges::copy(text, reinterpret_cast<char*>(words.data() + 1));
     w.constants.insert(w.constants.end(), words.begin(), words.end());
     return w.emit(Op::set_address, none, Region::constant + first);
+}
+
+meaning::RealForm form_of_reals(const Dialect& dialect) {
+    using enum meaning::RealForm;
+    return dialect.reals_have_exponents ? exponent : dialect.reals_are_rounded ? rounded : shortest;
 }
 
 /// The name of the value goes to the text, which stays where the number is that of none.
@@ -89,9 +95,9 @@ Slot text_conversion(Writing& w, const Expression& e) {
                       ? (from.type->bits == 32 ? Op::text_of_float : Op::text_of_real)
                   : from.type->is_unsigned_64() ? Op::text_of_unsigned
                                                 : Op::text_of_signed;
-    const bool is_marked =
-        from.type->is_real() ? e.place.dialect().reals_are_rounded : e.conversion.has_sign;
-    w.put(op, made, number, is_marked ? 1 : 0);
+    const Slot form = from.type->is_real() ? static_cast<Slot>(form_of_reals(e.place.dialect()))
+                                           : e.conversion.has_sign;
+    w.put(op, made, number, form);
     if (from.type->texts_are_names) write_name(w, *from.type, kept, made);
     return made;
 }

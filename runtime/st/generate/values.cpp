@@ -253,7 +253,7 @@ bool is_wide(const Writing& w, const Expression& e) {
     const bool is_whole = e.type && (e.type->kind == Kind::integer || e.type->is_bits());
     if (!is_whole || e.type->bits >= 64 || w.options.overflow_faults) return false;
     if (e.kind == E::converted) return !e.conversion.is_written && is_wide(w, *e.operands[0]);
-    return is_arithmetic(e) && e.place.dialect().reckons_wide;
+    return is_arithmetic(e) && e.type->bits < e.place.dialect().reckons_in;
 }
 
 Slot wide_value(Writing& w, const Expression& e) {

@@ -48,7 +48,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .most_aligned = 8,
                          .text_length = 80,
                          .long_numbers_count_time = true,
-                         .reckons_wide = true,
+                         .reckons_in = 64,
                          .loops_look_again = true,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true,
@@ -72,6 +72,7 @@ const Dialect matiec = [] {
     made.addresses_of_sizes_are_apart = true;
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.times_count_ms = false;
+    made.reckons_in = 32;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;
     return made;
@@ -88,6 +89,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .vendor = Vendor::siemens,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
+                     .reals_have_exponents = true,
                      .long_numbers_count_time = true,
                      .zero_divides_to_zero = true,
                      .times_count_ms = true,

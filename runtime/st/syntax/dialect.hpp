@@ -43,10 +43,12 @@ struct Dialect {
     AddressCount addresses_count = AddressCount::bytes;
     bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC
     bool reals_are_rounded = false;             ///< REAL_TO_STRING(12.0) is '12.0', else '12'
+    bool reals_have_exponents = false;          ///< REAL_TO_STRING(12.0) is '+1.200000E+1'
     std::uint8_t most_aligned = 1;              ///< bytes that a member of a structure begins at
     std::uint32_t text_length = 254;            ///< characters of a STRING without a length
     bool long_numbers_count_time = false;       ///< TIME_TO_LINT(T#1s) is 1000, else in ns
-    bool reckons_wide = false;      ///< whole numbers in 64 bits, until they are kept, as on x64
+    std::uint8_t reckons_in = 0;    ///< bits, whole numbers that have fewer, until they are kept:
+                                    ///< 64 as on x64, 32 as C has it; else in their own
     bool bool_is_number = false;    ///< a BOOL is 0 or 1 where a number is due
     bool loops_look_again = false;  ///< FOR reads its limit and step in each pass, else once
     bool rounds_away = false;       ///< REAL_TO_INT(2.5) is 3, else the even one
