@@ -43,6 +43,13 @@ void refuse_namespace(Checking& c, Place place, std::string_view path) {
     name.text = path;
     name.place = place;
     if (c.may_be_foreign(name)) return;
+    const bool is_of_library =
+        std::ranges::any_of(c.catalog.libraries(),
+                            [&](const LibraryFile& file) { return same_name(file.library, path); });
+    if (is_of_library)
+        return (void)c.fail(code::not_declared, place,
+                            fmt::format("the library '{}' is here without this", path),
+                            fmt::format("declare it in your sources, without '{}.'", path));
     c.fail(code::not_declared, place, fmt::format("there is no namespace '{}'", path),
            near.empty() ? "give the sources that declare it, too" : near);
 }
