@@ -37,9 +37,12 @@ ConstPathStretches stretches_of(const Path& path, std::span<const PathPiece> rin
     return {ring, path.stretch, path.stretches};
 }
 
-void look_back_where_changed(Path& path, std::span<PathPiece> ring, bool keeps = true) {
+/// `relied`: what the leg under way needs holds still.
+void look_back_where_changed(Path& path, std::span<PathPiece> ring, bool relied = true) {
     if (path.changed == path.stretches) return;
-    look_back({ring, path.stretch, path.stretches}, path.changed, keeps);
+    PathReliance on;
+    if (relied) on = {path.leg.goal + 1, path.leg.end_velocity()};
+    look_back({ring, path.stretch, path.stretches}, path.changed, on);
     path.changed = path.stretches;
 }
 
@@ -144,6 +147,7 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
     const MotionState from{0, path.leg.end_velocity(), 0, 0};
     path.time -= path.leg.duration();
     path.stretch = path.leg.goal + 1;
+    look_back_where_changed(path, ring);
     const double base = path.leg.end;
     path.leg = {};
     path.leg.base = path.leg.end = base;
@@ -153,7 +157,6 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
         path.time = 0;
         return;
     }
-    look_back_where_changed(path, ring);
     const PathOutlook outlook = outlook_of(path, ring);
     path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, path.leg);
     if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg);

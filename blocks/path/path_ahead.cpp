@@ -127,7 +127,7 @@ bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, 
         return false;
     const double end = base + ramp.end.position;
     const std::uint64_t goal = stretch_at(outlook.stretches, end);
-    if (!(end <= outlook.stretches[goal].end)) return false;
+    if (!(end <= outlook.stretches[goal].end) || outlook.stretches.passes_stop(goal)) return false;
     PathLeg leg;
     leg.base = base;
     for (int i = 0; i < ramp.count; ++i) {
@@ -232,8 +232,6 @@ IntoBoxes plan_harder_halt(const PathOutlook& outlook, const MotionState& from, 
         PathLeg leg;
         const PathLimit limit{all.velocity, part * all.acceleration, part * all.jerk};
         if (!try_ramp(outlook, from, base, 0, limit, leg, braking)) continue;
-        for (std::uint64_t k = outlook.stretches.first; k < leg.goal; ++k)
-            if (outlook.stretches[k].joint == 0) return IntoBoxes::none;
         if (!(leg.duration() < within)) return IntoBoxes::none;
         out = leg;
         return part == 1 ? IntoBoxes::soon : IntoBoxes::late;

@@ -77,9 +77,11 @@ bool is_in_box(const MotionState& start, double duration, const PathLimit& box) 
     return most <= V && least >= -rounding * box.velocity;
 }
 
-/// Whatever it was planned with: each of its states is in the box of the stretch that it lies in.
+/// Whatever it was planned with: each of its states is in the box of the stretch that it lies in,
+/// and it passes no stop.
 bool keeps_boxes(ConstPathStretches stretches, const Departure& departure, std::uint64_t goal,
                  const MotionPlan& plan) {
+    if (stretches.passes_stop(goal)) return false;
     std::uint64_t k = stretches.first;
     for (std::size_t i = 0; i < plan.count; ++i) {
         MotionState s = plan.phases[i].start;

@@ -75,15 +75,29 @@ void find_entry(PathStretches stretches, std::uint64_t k) {
         take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
 }
 
+/// The velocity that the leg under way, and the ramps behind it, come to a stretch with; 0 where
+/// none of them ends there.
+double velocity_needed(PathStretches stretches, const PathReliance& relied, std::uint64_t k) {
+    double velocity = relied.velocity;
+    std::uint64_t next = relied.stretch;
+    while (next < k && velocity > 0) {
+        velocity = stretches[next].ramp_exit;
+        next = stretches[next].target + 1;
+    }
+    return next == k ? velocity : 0;
+}
+
 }  // namespace
 
-void look_back(PathStretches stretches, std::uint64_t changed, bool keeps) {
+void look_back(PathStretches stretches, std::uint64_t changed, const PathReliance& relied) {
     for (std::uint64_t k = stretches.count; k-- > stretches.first;) {
         const bool may_end = k > stretches.first && k <= changed;
         const bool was_bound = may_end && stretches.is_bound_by_joint(k - 1);
         const PathStretch before = stretches[k];
         find_entry(stretches, k);
-        if (keeps && k < changed && before.entry > stretches[k].entry) stretches[k] = before;
+        if (before.entry > stretches[k].entry &&
+            velocity_needed(stretches, relied, k) > stretches[k].entry)
+            stretches[k] = before;
         if (was_bound && stretches.is_bound_by_joint(k - 1)) return;
     }
 }

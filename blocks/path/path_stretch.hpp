@@ -59,14 +59,28 @@ struct PathStretchesOf {
         return !is_last(number) &&
                (*this)[number + 1].entry >= factor * (*this)[number].joint * (1 - rounding);
     }
+
+    /// A joint before a stretch has to be stood at.
+    bool passes_stop(std::uint64_t number) const {
+        for (std::uint64_t k = first; k < number; ++k)
+            if ((*this)[k].joint == 0) return true;
+        return false;
+    }
 };
 
 using PathStretches = PathStretchesOf<PathPiece>;
 using ConstPathStretches = PathStretchesOf<const PathPiece>;
 
+/// What the leg under way comes to a stretch with: from there on it is to be braked, whatever else
+/// is found.
+struct PathReliance {
+    std::uint64_t stretch = 0;
+    double velocity = 0;  ///< [u/s]
+};
+
 /// Finds `entry` of all stretches anew whose end, box or joint has changed, which are those from
-/// `changed` on, and of those before as far as that goes. `keeps`: what was there has only grown,
-/// so that the ramps found before hold, and none is given up for a lesser one.
-void look_back(PathStretches stretches, std::uint64_t changed, bool keeps);
+/// `changed` on, and of those before as far as that goes. What was there has only grown, or is not
+/// relied on: where less is found than what the leg under way needs, the ramp that it needs stays.
+void look_back(PathStretches stretches, std::uint64_t changed, const PathReliance& relied);
 
 }  // namespace lineshaft

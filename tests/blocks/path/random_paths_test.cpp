@@ -1,0 +1,248 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "blocks/path/path.hpp"
+#include "blocks/path/path_cubic.hpp"
+#include "tests/blocks/path/path_motions.hpp"
+
+using namespace lineshaft;
+using namespace lineshaft::test;
+
+namespace {
+
+class Random {
+  public:
+    explicit Random(std::uint64_t seed) : numbers(seed) {}
+    double share() { return static_cast<double>(numbers() >> 11) * 0x1p-53; }
+    double between(double least, double most) { return least + (most - least) * share(); }
+    double decades(double least, double most) { return std::pow(10, between(least, most)); }
+
+  private:
+    std::mt19937_64 numbers;
+};
+
+PathVector random_point(Random& random, std::size_t axes, double size) {
+    PathVector x{};
+    for (std::size_t i = 0; i < axes; ++i) x[i] = random.between(-size, size);
+    return x;
+}
+
+struct RandomPath {
+    std::vector<PathCurve> curves;
+    std::vector<PathLimits> limits;
+    std::vector<PathJoint> joints;
+};
+
+PathJoint random_joint(Random& random, double size) {
+    if (random.share() < 0.2) return {random.share() < 0.5 ? 0 : random.decades(-2, 2), 0};
+    return {0, size * random.decades(-4, 0)};
+}
+
+/// With the tangent of the last one, or that of a line to the point; the part of a spline that a
+/// longer one would have.
+void append_spline(RandomPath& out, Random& random, const PathVector& from, const PathVector& to,
+                   const PathLimits& limits) {
+    const PathVector beyond = random_point(random, 3, std::abs(to[0]) + 1);
+    PathPoint begin = waypoint(from, from, to);
+    if (!out.curves.empty() && random.share() < 0.7)
+        begin = out.curves.back().at(out.curves.back().length);
+    std::array<PathCurve, most_spline_parts> parts;
+    const std::size_t count = spline_between(begin, waypoint(from, to, beyond), parts);
+    for (std::size_t i = 0; i < count; ++i) {
+        out.curves.push_back(parts[i]);
+        out.limits.push_back(limits);
+    }
+}
+
+/// Through two to six random points.
+void append_cubic(RandomPath& out, Random& random, const PathVector& from, std::size_t axes,
+                  double size, const PathLimits& limits) {
+    std::vector<PathVector> points{from};
+    for (auto more = 1 + static_cast<int>(random.between(0, 4.999)); more > 0; --more)
+        points.push_back(random_point(random, axes, size));
+    std::array<PathCurve, most_spline_parts> parts;
+    for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+        const std::size_t count = cubic_between(knot_of(points, k), knot_of(points, k + 1), parts);
+        if (count == 0) return;
+        out.curves.insert(out.curves.end(), parts.begin(),
+                          parts.begin() + static_cast<std::ptrdiff_t>(count));
+        out.limits.resize(out.curves.size(), limits);
+    }
+}
+
+/// Lines, arcs and splines, some lines cut in two, so that there are smooth joints.
+RandomPath random_path(Random& random, std::size_t most) {
+    RandomPath out;
+    const auto axes = static_cast<std::size_t>(random.between(2, 6.999));
+    const double size = random.decades(-2, 3);
+    PathLimits limits{{random.decades(-1, 3), random.decades(-1, 4), random.decades(0, 6)}, {}};
+    for (PathLimit& axis : limits.axes) {
+        axis = {random.decades(-1, 3), random.decades(-1, 4), random.decades(0, 6)};
+    }
+    const double mean = random.share() < 0.05 ? 200 : 15;
+    const auto wanted = std::min<double>(500, 1 - mean * std::log(1 - random.share()));
+    PathVector from = random_point(random, axes, size);
+    while (static_cast<double>(out.curves.size()) < wanted && out.curves.size() < most) {
+        const PathVector to = random_point(random, axes, size);
+        PathCurve curve;
+        const double kind = random.share();
+        if (kind < 0.2) {
+            if (kind < 0.1)
+                append_spline(out, random, from, random_point(random, axes, size), limits);
+            else
+                append_cubic(out, random, from, axes, size, limits);
+            if (!out.curves.empty()) from = out.curves.back().end;
+            while (out.joints.size() < out.curves.size()) out.joints.push_back({});
+            continue;
+        }
+        const bool line = random.share() < 0.5;
+        if ((line ? line_to(from, to, curve)
+                  : arc_through(from, random_point(random, axes, size), to, curve)) !=
+            PathFault::none) {
+            continue;
+        }
+        PathCurve half;
+        if (line && random.share() < 0.5 &&
+            line_to(from, curve.at(curve.length * random.share()).position, half) ==
+                PathFault::none &&
+            line_to(half.end, to, curve) == PathFault::none) {
+            out.curves.push_back(half);
+            out.limits.push_back(limits);
+        }
+        out.curves.push_back(curve);
+        out.limits.push_back(limits);
+        while (out.joints.size() < out.curves.size())
+            out.joints.push_back(random.share() < 0.5 ? PathJoint{} : random_joint(random, size));
+        from = to;
+    }
+    return out;
+}
+
+/// Halts are as hard as the pieces allow, or as these say.
+void command(Path& path, Random& random, const PathLimit& braking) {
+    const double what = random.share();
+    if (what < 0.3) {
+        path.set_override(random.share() < 0.2 ? 0 : random.share());
+    } else if (what < 0.6) {
+        path.halt(braking);
+    } else {
+        path.resume();
+        path.set_override(random.share() < 0.5 ? 1 : random.between(0.1, 1.5));
+    }
+}
+
+/// What is wrong with the path of a seed, cut to `most` pieces; empty if nothing. Halts come to
+/// `harder` times the acceleration of the path, and more of the jerk.
+std::string fault_of(std::uint64_t seed, std::size_t most, double harder = 1) {
+    Random random(seed);
+    const RandomPath wanted = random_path(random, most);
+    PathLimits limits = wanted.limits[0];
+    limits.path.acceleration *= harder;
+    limits.path.jerk *= harder * harder;
+    const PathLimit braking = harder == 1 ? no_path_limit : limits.path;
+    std::vector<PathPiece> ring(wanted.curves.size() < 8 ? 8 : wanted.curves.size() / 2 + 2);
+    Path path;
+    std::size_t given = 0;
+    double length = 0, before = 0;
+    for (const PathCurve& curve : wanted.curves) length += curve.length;
+    const double dt = random.decades(-3, -1) * length / wanted.limits[0].path.velocity;
+    const double commands = random.share() < 0.3 ? 0 : random.decades(-3, -1);
+    for (long scan = 0; scan < 60'000; ++scan) {
+        while (given < wanted.curves.size()) {
+            const PathFault fault =
+                path.append(ring, wanted.curves[given], wanted.limits[given], wanted.joints[given]);
+            if (fault == PathFault::full) break;
+            if (fault != PathFault::none) return "append";
+            ++given;
+        }
+        if (random.share() < commands && scan < 2000) command(path, random, braking);
+        if (scan == 2000 && commands > 0) path.resume(), path.set_override(1);
+        // An axis may be decades slower than the path: longer and longer scans come to its end.
+        const double slow = std::pow(1.001, std::max(0L, scan - 20'000));
+        const double step = dt * random.share() * slow;
+        const PathMotion m = path.advance(ring, step);
+        const std::string what = violation(m, limits);
+        if (!what.empty()) return what + " in scan " + std::to_string(scan);
+        if (path.lost) return "lost";
+        if (passes_stop(path, ring, limits))
+            return "a stop is passed in scan " + std::to_string(scan);
+        if (m.path.position < before - 1e-9 * length) return "position falls";
+        before = m.path.position;
+        if (path.finished() && given == wanted.curves.size()) {
+            return m.position == wanted.curves.back().end && path.remaining() == 0 ? "" : "end";
+        }
+    }
+    return "does not end";
+}
+
+long number_of(const char* variable, long otherwise) {
+    const char* const text = std::getenv(variable);
+    return text == nullptr ? otherwise : std::atol(text);
+}
+
+}  // namespace
+
+TEST_CASE("path: a copy of its bytes goes on alike") {
+    Random random(7);
+    const RandomPath wanted = random_path(random, 20);
+    std::vector<PathPiece> ring(wanted.curves.size());
+    Path path;
+    for (std::size_t i = 0; i < wanted.curves.size(); ++i) {
+        REQUIRE(path.append(ring, wanted.curves[i], wanted.limits[i]) == PathFault::none);
+    }
+    path.advance(ring, 0.1);
+    path.halt();
+    Path copy = path;
+    std::vector<PathPiece> other = ring;
+    for (int scan = 0; scan < 100; ++scan) {
+        const PathMotion m = path.advance(ring, 0.01), n = copy.advance(other, 0.01);
+        CHECK(std::memcmp(&m, &n, sizeof m) == 0);
+    }
+}
+
+TEST_CASE("path: a halt that ends at a joint but for rounding goes on from there") {
+    CHECK(fault_of(1144, 500).empty());
+}
+
+TEST_CASE("path: braking that was planned for holds when longer braking is found behind it") {
+    CHECK(fault_of(55989, 500).empty());
+}
+
+TEST_CASE("path: a course whose last stretch has grown goes on from its end") {
+    for (const std::uint64_t seed : {5003789, 6000318, 6001551, 6002405})
+        CHECK(fault_of(seed, 500).empty());
+}
+
+TEST_CASE("path: a greater exit that lowers an entry leaves no ramp that ends faster") {
+    CHECK(fault_of(200884, 500).empty());
+}
+
+TEST_CASE("path: random paths keep all limits and end exactly") {
+    const long first = number_of("LINESHAFT_SEED", 0);
+    const long count = number_of("LINESHAFT_PATHS", 120);
+    for (long seed = first; seed < first + count; ++seed) {
+        const auto number = static_cast<std::uint64_t>(seed);
+        if (fault_of(number, 500).empty()) continue;
+        std::size_t most = 1;
+        while (fault_of(number, most).empty()) ++most;
+        FAIL("seed " << seed << ", cut to " << most << " pieces: " << fault_of(number, most));
+    }
+}
+
+TEST_CASE(
+    "path: random paths keep the limits of their axes in halts that are harder than they are") {
+    const long first = number_of("LINESHAFT_SEED", 0);
+    const long count = number_of("LINESHAFT_PATHS", 60);
+    for (long seed = first; seed < first + count; ++seed) {
+        const std::string fault = fault_of(static_cast<std::uint64_t>(seed), 500, 10);
+        INFO("seed " << seed);
+        CHECK(fault.empty());
+    }
+}
