@@ -103,6 +103,7 @@ class Suites {
 
     std::vector<SuiteTest> run(std::int64_t cycle) {
         bench_.set_cycle(cycle);
+        set("is_watched", 1);
         for (std::int64_t number = 0; bench_.time() < longest && !is_interrupted(); ++number) {
             set("cycle", number);
             set("suite", 0);
