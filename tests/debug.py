@@ -533,6 +533,18 @@ def test_structured_text_tests():
     assert client.event("exited") == {"exitCode": 1}
     told = "".join(e["body"]["output"] for e in client.events if e["event"] == "output")
     assert client.end() == 1
+    failing = folder / "fails_test.st"
+    failing.write_text(tests.read_text().replace("TEARDOWN\nadder", "TEST 'divides'\nASSERT_EQ(Divided(0), 1);\nEND_TEST\nTEARDOWN\nadder") +
+                       "FUNCTION Divided : INT\nVAR_INPUT parts : INT; END_VAR\nDivided := 100 / parts;\nEND_FUNCTION\n")
+    for test, wanted in (("adds wrong", [("TEST 'adds wrong' (TEST)", 15)]), ("divides", [("Divided", 25), ("TEST 'divides' (TEST)", 18)])):
+        client = Client(lineshaft)
+        client.launch(failing, test=test, stopOnEntry=True)
+        client.event("stopped")
+        client.request("setExceptionBreakpoints", filters=["block_error"])
+        assert client.step("continue")["reason"] == "exception"
+        found = [(each["name"], each["line"]) for each in client.stack()][:-1]
+        assert found == wanted, found  # where it failed, whatever TEARDOWN calls behind that
+        client.end()
     client = Client(lineshaft)  # in a folder, beside what is no test and what has mistakes
     whole = folder / "whole/test"
     whole.mkdir(parents=True)

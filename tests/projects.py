@@ -1008,6 +1008,19 @@ def check_suites_of_programs():
     assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
 
 
+def check_suites_of_lists():
+    """A list of globals that no program names has suites, too; what they use may be a block with VAR_GENERIC of another file."""
+    twincat("listed", "POU", "Stack", "FUNCTION_BLOCK Stack\nVAR_GENERIC CONSTANT length : INT := 5; END_VAR\nVAR_OUTPUT size : INT; END_VAR\n"
+            "VAR a : ARRAY[1..length] OF INT; END_VAR", "size := UPPER_BOUND(a, 1);")
+    twincat("listed", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR small : Stack<3>; large : Stack<10>; END_VAR",
+            "TEST('has its size'); small(); large(); AssertEquals_INT(3, small.size, ''); AssertEquals_INT(10, large.size, ''); TEST_FINISHED();")
+    twincat("listed", "GVL", "Suites", "{attribute 'qualified_only'}\nVAR_GLOBAL suite : Suite; END_VAR")
+    twincat("listed", "POU", "MAIN", "PROGRAM MAIN", "TcUnit.RUN();")
+    plcproj("listed/Listed.plcproj", "Listed", ["Stack.TcPOU", "Suite.TcPOU", "Suites.TcGVL", "MAIN.TcPOU"], [("TcUnit", "TcUnit")])
+    said = run("test", "listed")
+    assert "Suites.suite: has its size" in said and "1 of 1 passed" in said, said
+
+
 def check_axes_that_are_referred_to():
     """A pointer or a reference to an axis of a list, or to what a method was given, is to that axis from then on."""
     twincat("referred", "GVL", "GVL", "VAR_GLOBAL\n one, two : AXIS_REF;\nEND_VAR")
@@ -1130,6 +1143,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_called_programs()
     check_axes_of_suites()
     check_suites_of_programs()
+    check_suites_of_lists()
     check_axes_that_are_referred_to()
     check_foreign_names()
     check_hostile()

@@ -293,12 +293,27 @@ bool is_program_of(const SourceFile& source, std::string_view name) {
            st::same_name(fs::path(source.path).stem().string(), name);
 }
 
+bool is_of_suites(const std::shared_ptr<const SourceFile>& source) {
+    return lower(source->text).find("fb_testsuite") != std::string::npos;
+}
+
+/// Lists of globals of a project that have suites, and what these need.
+std::vector<std::shared_ptr<const SourceFile>> lists_of_suites(const TestFile& tests,
+                                                               const projects::Project& project) {
+    std::vector<std::shared_ptr<const SourceFile>> found;
+    for (const auto& source : project.sources) {
+        if (lower(source->text).find("var_global") == std::string::npos) continue;
+        const auto needed = tests.sources->needed_by(source);
+        if (std::ranges::none_of(needed, is_of_suites)) continue;
+        found.push_back(source);
+        found.insert(found.end(), needed.begin(), needed.end());
+    }
+    return found;
+}
+
 /// Programs that tasks run beside that one, and in whose blocks suites may stand.
 std::vector<std::string> programs_beside(const TestFile& tests, const projects::Project& project,
                                          const SourceFile& program) {
-    const auto is_of_suites = [](const std::shared_ptr<const SourceFile>& source) {
-        return lower(source->text).find("fb_testsuite") != std::string::npos;
-    };
     std::vector<std::string> names;
     for (const projects::ProjectTask& task : project.tasks)
         for (const projects::Name& name : task.programs) {
@@ -313,17 +328,18 @@ std::vector<std::string> programs_beside(const TestFile& tests, const projects::
     return names;
 }
 
-std::vector<SuiteEntry> test_suites(const TestFile& tests,
+std::vector<SuiteEntry> test_suites(const TestFile& tests, const projects::Project& project,
                                     const std::shared_ptr<const SourceFile>& program,
-                                    std::int64_t cycle, const TestOptions& options,
-                                    const std::vector<std::string>& beside) {
+                                    std::int64_t cycle, const TestOptions& options) {
     Diagnostics out;
     const double start = wall_seconds();
+    const std::vector<std::string> beside = programs_beside(tests, project, *program);
     auto sources = tests.sources->needed_by(program);
-    for (const auto& source : tests.sources->needed_by(beside)) {
-        const auto is_it = [&](const auto& known) { return known->is_same_text(*source); };
-        if (!is_it(program) && std::ranges::none_of(sources, is_it)) sources.push_back(source);
-    }
+    for (const auto& more : {tests.sources->needed_by(beside), lists_of_suites(tests, project)})
+        for (const auto& source : more) {
+            const auto is_it = [&](const auto& known) { return known->is_same_text(*source); };
+            if (!is_it(program) && std::ranges::none_of(sources, is_it)) sources.push_back(source);
+        }
     const auto ran =
         st::run_suites(program, sources, standard_blocks(), cycle, out,
                        {.interrupt = &interrupt_requested, .at_work = options.at_work}, {}, beside);
@@ -359,8 +375,7 @@ std::vector<SuiteEntry> test_project(const TestFile& tests, const TestOptions& o
         for (const projects::ProjectTask& task : project.tasks)
             for (const projects::Name& name : task.programs)
                 if (task.every > 0 && is_program_of(*source, name.text)) cycle = task.every;
-        auto found =
-            test_suites(tests, source, cycle, options, programs_beside(tests, project, *source));
+        auto found = test_suites(tests, project, source, cycle, options);
         std::ranges::move(found, std::back_inserter(entries));
     }
     if (entries.empty() && tests.is_named && !options.filter)

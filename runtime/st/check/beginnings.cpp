@@ -106,8 +106,9 @@ Statement* call_constructor(Checking& c, const Expression& like, Expression* ins
     for (const Variable& input : method.variables) {
         if (input.section != Section::input || given.size() == 2) continue;
         const bool by_place = !values.empty() && (!values[0].is_named() || !values[0].value);
+        const bool is_retains = given.empty();  // bInitRetains, behind which comes bInCopyCode
         given.push_back(
-            {.name = by_place ? Token{} : input.name, .value = make_boolean(c, like, false)});
+            {.name = by_place ? Token{} : input.name, .value = make_boolean(c, like, is_retains)});
     }
     for (const Argument& value : values)
         given.push_back(value.value ? value
@@ -171,7 +172,7 @@ bool is_called(const Checking& c, Phase phase, const Type* type) {
             return begins || is_called(c, phase, member->type);
         });
     if (type->kind != Kind::block || phase == Phase::members) return false;
-    return phase == Phase::init ? constructor_of(*type) != nullptr
+    return phase == Phase::init ? constructor_of(*type) || beginning_of_parts(*type)
                                 : !methods_behind(*type->routine).empty();
 }
 
@@ -226,9 +227,15 @@ void construct(Checking& c, const Constructing& at, const Type& type,
                 make_call_statement(c, make_call(c, at.like, make_member(c, part(), name), {})));
         return;
     }
-    if (type.kind == Kind::block)
-        return to.push_back(call_constructor(
-            c, at.like, part(), values ? *values : std::vector<Argument>{}, *constructor_of(type)));
+    if (type.kind == Kind::block) {
+        const auto given = values ? *values : std::vector<Argument>{};
+        if (const Routine* begins = beginning_of_parts(type))
+            to.push_back(make_call_statement(
+                c, make_call(c, at.like, make_member(c, part(), begins->pou->name.text), {})));
+        if (const Routine* own = constructor_of(type))
+            to.push_back(call_constructor(c, at.like, part(), given, *own));
+        return;
+    }
     if (type.kind == Kind::structure) {
         for (const Variable* member : type.members) {
             const auto own = [&] { return make_member(c, part(), member->text); };
@@ -305,6 +312,16 @@ bool is_constructed(const Checking& c, const Type* type) {
     return is_called(c, Phase::init, type);
 }
 
+bool is_followed(const Checking& c, const Type* type) {
+    return is_called(c, Phase::behind_init, type);
+}
+
+bool has_constructor(const Checking& c, const Type* type) {
+    while (type && type->kind == Kind::array) type = type->element;
+    const bool is_block = type && type->kind == Kind::block;
+    return is_block ? constructor_of(*type) != nullptr : is_constructed(c, type);
+}
+
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
     c.fail(code::wrong_arguments, place,
            fmt::format("{} takes no arguments behind its name", describe(type)),
@@ -358,7 +375,7 @@ void begin_in(Checking& c, Variable& variable, Phase phase) {
 
 void begin_instance(Checking& c, Variable& variable) {
     const Type* type = variable.type;
-    if (variable.constructed && !variable.constructed->empty() && !is_constructed(c, type)) {
+    if (variable.constructed && !variable.constructed->empty() && !has_constructor(c, type)) {
         if (type) refuse_constructor_arguments(c, variable.name.place, *type);
         return;
     }

@@ -44,6 +44,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     resolve_bases(c);
     declare_globals(c);
     declare_routines(c);
+    begin_parts_of_blocks(c);
     check_classes(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);

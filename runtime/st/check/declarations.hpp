@@ -64,6 +64,10 @@ bool begin_with(Checking& c, Expression*& value, const Type& type);
 
 /// It is a block that has an FB_init, or has such in it.
 bool is_constructed(const Checking& c, const Type* type);
+/// Or has a method that follows that.
+bool is_followed(const Checking& c, const Type* type);
+/// It is one with an FB_init of its own or its base, or an array of such.
+bool has_constructor(const Checking& c, const Type* type);
 
 /// Calls FB_init of the instances that the variable is or has in it, with what stands behind its
 /// type, at the same time. What is declared behind that, `:= (x := 1)`, is assigned behind it.
@@ -93,6 +97,15 @@ void bring_up_to_date(Checking& c, Routine& routine);
 
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);
+
+// parts_of_blocks.cpp
+
+/// Behind the declaration of all variables: a block without an FB_init of its own that has
+/// instances with one gets a method that begins them, which whoever has an instance of it calls at
+/// first.
+void begin_parts_of_blocks(Checking& c);
+/// That method of a block; null: it has none.
+Routine* beginning_of_parts(const Type& block);
 
 // axes_of_tests.cpp
 

@@ -228,7 +228,7 @@ bool rewrite_new(Checking& c, Statement*& s) {
     const Type* type = resolve(c, *call.of);
     if (!type) return check(c, s->target), true;
     const std::vector<Argument>* values = constructor_arguments(call.of, type);
-    if (values && !values->empty() && !is_constructed(c, type)) {
+    if (values && !values->empty() && !has_constructor(c, type)) {
         refuse_constructor_arguments(c, call.of->place, *type);
         return true;
     }

@@ -10,11 +10,12 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of a number without type and one with; one of them is real.
-const Type* mixed(const Type& a, const Type& b) {
+/// Of a number without type and one with; one of them is real. `real` is what the first is beside
+/// an integer.
+const Type* mixed(const Type& a, const Type& b, const Type& real) {
     if (a.is_any() && b.is_any()) return a.is_real() ? &a : &b;
     const Type &any = a.is_any() ? a : b, &typed = a.is_any() ? b : a;
-    return any.is_real() ? common_type(typed, real_type) : &typed;
+    return any.is_real() ? common_type(typed, real) : &typed;
 }
 
 /// Of a bit string and an integer: that of the numbers.
@@ -160,12 +161,12 @@ const Type& number_type(const Type& type, const Type& other) {
     return type.has_numbers && !same_type(type, other) ? *type.base : type;
 }
 
-/// What values of both types have in common; null if there is nothing.
-const Type* common_of(const Type& one, const Type& two) {
+/// What values of both types have in common; null if there is nothing. `real` as in `mixed`.
+const Type* common_of(const Type& one, const Type& two, const Type& real) {
     const Type &a = number_type(one, two), &b = number_type(two, one);
     const Type* common = &a;
     if ((a.is_any() || b.is_any()) && a.is_real() != b.is_real())
-        common = mixed(a, b);
+        common = mixed(a, b, real);
     else if (a.is_any() && (!b.is_any() || b.is_real()))
         common = &b;
     else if (!b.is_any() && !same_type(a, b) && a.is_scalar())
@@ -184,11 +185,23 @@ bool are_bits(const Expression& call, std::size_t first) {
                        });
 }
 
+/// What a literal as `0.1` among the arguments is beside an integer.
+const Type& real_of_literals(const Expression& call, std::size_t first, const Type* expected) {
+    const auto begin = call.arguments.begin() + static_cast<std::ptrdiff_t>(first);
+    const bool is_of_single =
+        (expected && is_single(*expected)) ||
+        std::any_of(begin, call.arguments.end(),
+                    [](const Argument& argument) { return is_single(*argument.value->type); });
+    const bool is_double = call.place.dialect().real_literals_are_lreal && !is_of_single;
+    return is_double ? lreal_type : real_type;
+}
+
 /// The type that all arguments from `first` on have in common, which they become.
 const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
     const Type* common = &given_type(call, first);
+    const Type& real = real_of_literals(call, first, expected);
     for (std::size_t i = first + 1; i < call.arguments.size() && common; ++i)
-        common = common_of(*common, given_type(call, i));
+        common = common_of(*common, given_type(call, i), real);
     if (!common)
         return c.fail(code::conversion_may_lose, call.place,
                       fmt::format("the arguments of {} have no common type", call.standard->name),

@@ -137,6 +137,23 @@ TestResult Bench::run_on(const CodeRoutine& routine, std::byte* instance, std::u
             true, place.calls};
 }
 
+std::vector<std::uint64_t> Bench::end_of_scan() const {
+    const auto word_at = [&](std::uint32_t slot) {
+        return read<std::uint64_t>(unit_ + 8 * std::size_t{slot});
+    };
+    std::vector<std::uint64_t> end{word_at(place_slot), word_at(depth_slot)};
+    const std::uint32_t stack = made_.generated.code.calls_slot();
+    for (std::uint32_t i = 0; i < 2 * EndOfScan::of(end[0], end[1]).depth; ++i)
+        end.push_back(word_at(stack + i));
+    return end;
+}
+
+void Bench::end_at(std::span<const std::uint64_t> end) {
+    std::memcpy(unit_ + 8 * std::size_t{place_slot}, end.data(), 2 * sizeof end[0]);
+    std::memcpy(unit_ + 8 * std::size_t{made_.generated.code.calls_slot()}, end.data() + 2,
+                end.size_bytes() - 2 * sizeof end[0]);
+}
+
 void Bench::advance() {
     constexpr std::int64_t step = 1'000'000;
     for (std::int64_t left = now_.interval; left > 0; left -= step) {

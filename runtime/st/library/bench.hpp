@@ -37,6 +37,10 @@ class Bench : Witness {
     /// means the same to all.
     TestResult run_part(const CodeRoutine& routine, const Type& block, int global,
                         std::size_t slot);
+    /// Where what ran on the unit ended with a failure, and the calls that ran then.
+    std::vector<std::uint64_t> end_of_scan() const;
+    /// That again, whatever ran since.
+    void end_at(std::span<const std::uint64_t> end);
     /// Of the task that runs the unit [ns]; 1 ms else.
     void set_cycle(std::int64_t cycle) { now_.interval = cycle; }
     /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -102,6 +103,7 @@ class Suites {
 
     std::vector<SuiteTest> run(std::int64_t cycle) {
         bench_.set_cycle(cycle);
+        set("is_watched", 1);
         for (std::int64_t number = 0; bench_.time() < longest && !is_interrupted(); ++number) {
             set("cycle", number);
             set("suite", 0);
@@ -191,8 +193,10 @@ class Suites {
                 read<std::uint64_t>(part("skipped")) != 0};
     }
 
+    /// In sequence one is called in a cycle, and a cycle goes by between two.
     void call_suites() {
         const bool in_sequence = get("run_mode") == 2;
+        if (in_sequence && std::exchange(pauses_, false)) return;
         for (std::size_t i = 0; i < suites_.size() && !is_interrupted(); ++i) {
             Suite& suite = suites_[i];
             if (suite.is_done) continue;
@@ -205,7 +209,8 @@ class Suites {
                 result.failure += reference_without_block(*suite.block);
             if (!result.failure.empty()) note_fault(i, result);
             suite.is_done = !result.failure.empty() || open_tests(i).empty();
-            if (in_sequence && !suite.is_done) return;
+            pauses_ = suite.is_done;
+            if (in_sequence) return;
         }
     }
 
@@ -280,6 +285,7 @@ class Suites {
     std::vector<std::pair<const Routine*, std::ptrdiff_t>>
         beside_;  ///< programs, and their globals
     std::vector<Suite> suites_;
+    bool pauses_ = false;                                     ///< the one before is done
     std::map<std::int64_t, TestResult> failed_;               ///< the first of each test
     std::vector<std::pair<std::size_t, TestResult>> faults_;  ///< of suites without a test that ran
     TestResult fault_;                                        ///< of the program

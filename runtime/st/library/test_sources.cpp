@@ -69,6 +69,11 @@ void add_spaces(std::set<std::string>& to, const Scope& scope) {
     to.merge(around);
 }
 
+/// `stack` of `Stack<10>`
+std::string without_values(std::string_view name) {
+    return lower(name.substr(0, name.find('<')));
+}
+
 std::string_view space_at(const Tree& tree, Place place) {
     std::string_view path;
     const auto scopes = tree.scopes.find(place.source);
@@ -100,13 +105,14 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
         add_declared(entry.types, space_at(tree, name.place), name.text);
     };
     for (const Pou* unit : tree.units) declare(unit->name);
+    for (const GenericBlock& block : tree.generics) declare(block.pou->name);
     for (const TypeDeclaration& type : tree.types) declare(type.name);
     for (const Pou& pou : tree.pous)
         for (const auto& names : {pou.bases, pou.implemented})
-            for (const Token& name : names) entry.used_types.insert(lower(name.text));
+            for (const Token& name : names) entry.used_types.insert(without_values(name.text));
     for (const TypeText& type : tree.type_texts) {
         for (const Token& name : {type.name, type.base})
-            if (!name.text.empty()) entry.used_types.insert(lower(name.text));
+            if (!name.text.empty()) entry.used_types.insert(without_values(name.text));
         if (type.kind != TypeText::Kind::enumeration || type.is_qualified_only) continue;
         for (const Argument& value : type.values) entry.values.insert(lower(value.name.text));
     }

@@ -27,15 +27,19 @@ struct TestSuite::Made : Library::Made {
         codes.push_back(&code);
     }
 
-    /// The failure is the first thing that is found.
+    /// The failure is the first thing that is found, and where the unit's memory says that it
+    /// ended.
     TestResult run(Bench& bench, std::size_t test) const {
         const auto run = [&](const CodeRoutine* routine) {
             return routine ? bench.run(*routine, bench.unit()) : TestResult{};
         };
         TestResult result = run(setup);
         if (result.failure.empty()) result = run(codes[test]);
-        TestResult last = run(teardown);
-        return result.failure.empty() ? last : result;
+        if (result.failure.empty()) return run(teardown);
+        const std::vector<std::uint64_t> end = bench.end_of_scan();
+        run(teardown);
+        bench.end_at(end);
+        return result;
     }
 
     /// Without its quotes.

@@ -49,6 +49,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .text_length = 80,
                          .long_numbers_count_time = true,
                          .reckons_in = 64,
+                         .real_literals_are_lreal = true,
                          .loops_look_again = true,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true,
@@ -71,6 +72,7 @@ const Dialect matiec = [] {
     made.vendor = Vendor::matiec;
     made.addresses_of_sizes_are_apart = true;
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
+    made.real_literals_are_lreal = false;
     made.times_count_ms = false;
     made.reckons_in = 32;
     made.most_aligned = iec.most_aligned;

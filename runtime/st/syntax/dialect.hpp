@@ -47,11 +47,12 @@ struct Dialect {
     std::uint8_t most_aligned = 1;              ///< bytes that a member of a structure begins at
     std::uint32_t text_length = 254;            ///< characters of a STRING without a length
     bool long_numbers_count_time = false;       ///< TIME_TO_LINT(T#1s) is 1000, else in ns
-    std::uint8_t reckons_in = 0;    ///< bits, whole numbers that have fewer, until they are kept:
-                                    ///< 64 as on x64, 32 as C has it; else in their own
-    bool bool_is_number = false;    ///< a BOOL is 0 or 1 where a number is due
-    bool loops_look_again = false;  ///< FOR reads its limit and step in each pass, else once
-    bool rounds_away = false;       ///< REAL_TO_INT(2.5) is 3, else the even one
+    std::uint8_t reckons_in = 0;  ///< bits, whole numbers that have fewer, until they are kept:
+                                  ///< 64 as on x64, 32 as C has it; else in their own
+    bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
+    bool real_literals_are_lreal = false;  ///< `i * 0.1` of an INT is an LREAL, else a REAL
+    bool loops_look_again = false;         ///< FOR reads its limit and step in each pass, else once
+    bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
     bool times_count_ms = false;          ///< a TIME is whole ms in 32 bits, also what is reckoned
