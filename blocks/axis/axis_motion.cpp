@@ -54,6 +54,14 @@ double effective_jerk(double jerk, double acceleration, double deceleration) {
     return jerk == 0 ? per_nanosecond * std::max(acceleration, deceleration) : jerk;
 }
 
+Dynamics without_turning(Dynamics d, const MotionState& from) {
+    const double v = from.velocity, a = from.acceleration;
+    if (v * a < 0)
+        d.jerk = std::max(d.jerk, std::min(a * a / (2 * std::abs(v)),
+                                           effective_jerk(0, d.acceleration, d.deceleration)));
+    return d;
+}
+
 PlanResult PointMotion::begin(const MotionState& from, double goal, double end_velocity,
                               const Dynamics& dynamics, const Moment& at) {
     const double velocity = std::max(dynamics.velocity, std::abs(end_velocity));
