@@ -50,8 +50,8 @@ Dynamics symmetric(Dynamics dynamics);
 /// A jerk of 0 is a trapezoid: acceleration that comes in a nanosecond.
 double effective_jerk(double jerk, double acceleration, double deceleration);
 
-/// Of a motion to standstill: with as much jerk as it takes to be there by the time the acceleration
-/// is 0, so that it does not turn round before; a trapezoid's at most.
+/// Of a motion to standstill: with as much jerk as it takes to be there by the time the
+/// acceleration is 0, so that it does not turn round before; a trapezoid's at most.
 Dynamics without_turning(Dynamics dynamics, const MotionState& from);
 
 /// To a position, and with the velocity that it has there on. In the least time from any state.
