@@ -18,12 +18,12 @@ TEST_CASE("a stop never turns round, whatever the state, and keeps its jerk wher
         const double sign = random.below(2) == 0 ? -1 : 1;
         const MotionState from{0, sign * decades(1e-6, 1e9), 1000 * (random.share() - 0.5), 0};
         const Dynamics asked{100, decades(10, 300), decades(10, 300), decades(1, 1e6)};
-        const Dynamics d = without_turning(asked, from);
+        const double trapezoid = effective_jerk(0, asked.acceleration, asked.deceleration);
+        const Dynamics d = without_turning(asked, from, trapezoid);
         VelocityMotion stop;
         REQUIRE(stop.begin(from, 0, d, {}) == PlanResult::ok);
         CHECK(stop.end_state().velocity == 0);
         CHECK(stop.end_state().acceleration == 0);
-        const double trapezoid = effective_jerk(0, d.acceleration, d.deceleration);
         const double slack =
             1e-9 * std::abs(from.velocity) + from.acceleration * from.acceleration / trapezoid;
         for (int n = 0; n <= 100; ++n) {
