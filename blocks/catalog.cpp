@@ -1,5 +1,9 @@
 #include "blocks/catalog.hpp"
 
+#include <span>
+#include <string_view>
+#include <vector>
+
 #include "blocks/axis/axis.hpp"
 #include "blocks/axis/axis_valid.hpp"
 #include "blocks/axis/cam_table.hpp"
@@ -45,28 +49,80 @@ namespace lineshaft {
 
 namespace {
 
-/// Instructions of S7-1500 and S7-1500T for which there is no block.
+struct Lack {
+    std::string_view instead;
+    std::vector<std::string_view> names;
+};
+
+void lack(Catalog& blocks, std::span<const Lack> table) {
+    for (const Lack& row : table)
+        for (const std::string_view name : row.names) blocks.lack(name, row.instead);
+}
+
+/// Blocks of SoftMotion's CNC.
+void lack_of_softmotion(Catalog& blocks) {
+    const Lack table[] = {
+        {"G code is not run here: write its points as a path_table, and run along them with a "
+         "group "
+         "and MC_MovePath",
+         {"SMC_NCDecoder", "SMC_NCInterpreter", "SMC_Interpolator", "SMC_ReadNCFile",
+          "SMC_ReadNCFile2", "SMC_CheckVelocities", "SMC_SmoothPath", "SMC_RoundPath",
+          "SMC_ToolCorr", "SMC_ToolLengthCorr", "SMC_LimitCircularVelocity", "SMC_OutQueue",
+          "SMC_CNC_REF"}},
+        {"take SMC_FollowPosition, which gives an axis a position of the program's own in each "
+         "cycle",
+         {"SMC_ControlAxisByPos", "SMC_ControlAxisByPosVel"}},
+        {"take SMC_FollowVelocity, which gives an axis a velocity of the program's own in each "
+         "cycle",
+         {"SMC_ControlAxisByVel"}},
+        {"leave it out: the axes of a group are Cartesian here, and their positions the "
+         "coordinates",
+         {"SMC_TRAFO_Gantry2", "SMC_TRAFO_Gantry3", "SMC_TRAFOF_Gantry2", "SMC_TRAFOF_Gantry3"}}};
+    lack(blocks, table);
+}
+
+/// Instructions of S7-1200, S7-1500 and S7-1500T for which there is no block.
 void lack_of_siemens(Catalog& blocks) {
-    for (const char* torque : {"MC_TorqueLimiting", "MC_TorqueRange", "MC_TorqueAdditive"})
-        blocks.lack(torque,
-                    "an axis is led by its position here and has no torque: wire a servo_drive, "
-                    "whose mechanics have forces");
-    for (const char* probe : {"MC_MeasuringInput", "MC_MeasuringInputCyclic"})
-        blocks.lack(probe, "take MC_TouchProbe, whose trigger is a signal");
-    blocks.lack("MC_AbortMeasuringInput", "take MC_AbortTrigger, which ends MC_TouchProbe");
-    for (const char* cam : {"MC_OutputCam", "MC_CamTrack"})
-        blocks.lack(cam, "take MC_DigitalCamSwitch, which has several cams and tracks");
-    for (const char* drive : {"MC_SetAxisSTW", "MC_SaveAbsoluteEncoderData", "MC_SetSensor"})
-        blocks.lack(drive, "leave it out: an axis has no control word and no encoders here");
-    blocks.lack("MC_GearInVelocity", "take MC_GearIn, which couples velocities");
-    for (const char* offset : {"MC_OffsetRelative", "MC_OffsetAbsolute"})
-        blocks.lack(offset, "take MC_MoveSuperimposed, which adds a distance to the slave's way");
-    blocks.lack("MC_LeadingValueAdditive", "take MC_CombineAxes, which adds a second master");
-    blocks.lack("MC_MotionInVelocity",
-                "take MC_MoveVelocity, or MC_MotionInPosition with set-points of the program");
-    blocks.lack("MC_MotionInSuperimposed", "take MC_MoveSuperimposed");
-    for (const char* cam : {"MC_InterpolateCam", "MC_CopyCamData"})
-        blocks.lack(cam, "write the points of the cam as a cam_table in the program");
+    const Lack table[] = {
+        {"an axis is led by its position here and has no torque: wire a servo_drive, whose "
+         "mechanics have forces",
+         {"MC_TorqueLimiting", "MC_TorqueRange", "MC_TorqueAdditive"}},
+        {"take MC_TouchProbe, whose trigger is a signal",
+         {"MC_MeasuringInput", "MC_MeasuringInputCyclic"}},
+        {"take MC_AbortTrigger, which ends MC_TouchProbe", {"MC_AbortMeasuringInput"}},
+        {"take MC_DigitalCamSwitch, which has several cams and tracks",
+         {"MC_OutputCam", "MC_CamTrack"}},
+        {"leave it out: an axis has no control word and no encoders here",
+         {"MC_SetAxisSTW", "MC_SaveAbsoluteEncoderData", "MC_SetSensor"}},
+        {"take MC_GearIn, which couples velocities", {"MC_GearInVelocity"}},
+        {"take MC_MoveSuperimposed, which adds a distance to the slave's way",
+         {"MC_OffsetRelative", "MC_OffsetAbsolute"}},
+        {"take MC_CombineAxes, which adds a second master", {"MC_LeadingValueAdditive"}},
+        {"take MC_MoveVelocity, or MC_MotionInPosition with set-points of the program",
+         {"MC_MotionInVelocity"}},
+        {"take MC_MoveSuperimposed", {"MC_MotionInSuperimposed"}},
+        {"write the points of the cam as a cam_table in the program",
+         {"MC_InterpolateCam", "MC_CopyCamData"}},
+        {"find it in the points that the program has of its cam",
+         {"MC_GetCamLeadingValue", "MC_GetCamFollowingValue"}},
+        {"take MC_WriteParameter: 9 is the velocity, 13 the acceleration, 15 the deceleration, 17 "
+         "the jerk of commands that give none",
+         {"MC_ChangeDynamic", "MC_WriteParam"}},
+        {"take MC_ReadParameter, or a tag of the axis", {"MC_ReadParam"}},
+        {"call the commands themselves, each at the Done of the one before or with a BufferMode",
+         {"MC_CommandTable"}},
+        {"leave it out, and call MC_GearIn or MC_CamIn again when the slave has power",
+         {"MC_SynchronizedMotionSimulation"}},
+        {"take MC_SetCartesianTransform, whose coordinates mcPCS are those of one product",
+         {"MC_SetOcsFrame", "MC_TrackConveyorBelt"}},
+        {"leave it out: the axes of a group are Cartesian here, and lead the tool itself",
+         {"MC_DefineTool", "MC_SetTool", "MC_KinematicsTransformation",
+          "MC_InverseKinematicsTransformation", "MC_KinematicsMotionSimulation"}},
+        {"give each axis software_limits, lowest_position and highest_position",
+         {"MC_DefineWorkspaceZone", "MC_DefineKinematicsZone", "MC_SetWorkspaceZoneActive",
+          "MC_SetWorkspaceZoneInactive", "MC_SetKinematicsZoneActive",
+          "MC_SetKinematicsZoneInactive"}}};
+    lack(blocks, table);
 }
 
 Catalog make_catalog() {
@@ -198,6 +254,7 @@ Catalog make_catalog() {
                     "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
                     "mechanics have forces");
     lack_of_siemens(blocks);
+    lack_of_softmotion(blocks);
     blocks.add_libraries(vendor_libraries());
     return blocks;
 }

@@ -379,6 +379,7 @@ struct Axis {
     MotionError go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
                       bool in_any_case = false);
     MotionError plan_homing(const Request& request, const Moment& at, Start& from);
+    Dynamics to_stand(const Dynamics& d, const MotionState& from) const;
     bool stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const;
     void replan(const Context& context, const Moment& at);
 

@@ -170,7 +170,8 @@ void Axis::stop_again(const Context& context, const Moment& at, Job& job) {
     if (doing != Doing::holding) {
         const MotionState from = total();
         VelocityMotion anew;
-        const PlanResult planned = anew.begin(from, 0, dynamics_of(job.request), at);
+        const Dynamics d = to_stand(dynamics_of(job.request), from);
+        const PlanResult planned = anew.begin(from, 0, d, at);
         if (planned != PlanResult::ok) return tell(job, Progress::failed, motion_error_of(planned));
         const double left = velocity_motion.ramp.duration - velocity_motion.start.until(at.time);
         if (anew.ramp.duration < left) {

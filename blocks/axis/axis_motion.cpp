@@ -22,6 +22,14 @@ bool runs_against(const Phases& phases, std::size_t count, double direction, dou
     return false;
 }
 
+template <class Phases>
+double greatest_jerk_of(const Phases& phases, std::size_t count) {
+    double greatest = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        greatest = std::max(greatest, std::abs(phases[i].start.jerk));
+    return greatest;
+}
+
 constexpr double rounding = 1e-12;  ///< of a velocity
 
 /// Limits along the direction of the motion.
@@ -52,6 +60,12 @@ bool Dynamics::valid() const {
 double effective_jerk(double jerk, double acceleration, double deceleration) {
     constexpr double per_nanosecond = 1e9;
     return jerk == 0 ? per_nanosecond * std::max(acceleration, deceleration) : jerk;
+}
+
+Dynamics without_turning(Dynamics d, const MotionState& from, double most) {
+    const double v = from.velocity, a = from.acceleration;
+    if (v * a < 0) d.jerk = std::max(d.jerk, std::min(a * a / (2 * std::abs(v)), most));
+    return d;
 }
 
 PlanResult PointMotion::begin(const MotionState& from, double goal, double end_velocity,
@@ -95,6 +109,10 @@ void PointMotion::end_at(double position, double direction) {
 
 bool PointMotion::turns(double direction) const {
     return runs_against(plan.phases, plan.count, direction, rounding * plan.greatest_velocity());
+}
+
+double PointMotion::greatest_jerk() const {
+    return greatest_jerk_of(plan.phases, plan.count);
 }
 
 void PointMotion::move(double by) {
@@ -153,6 +171,10 @@ MotionState VelocityMotion::end_state() const {
     MotionState state = ramp.end;
     state.position += start_position;
     return state;
+}
+
+double VelocityMotion::greatest_jerk() const {
+    return greatest_jerk_of(ramp.phases, static_cast<std::size_t>(ramp.count));
 }
 
 double ramp_way(double from, double to, const Dynamics& dynamics) {

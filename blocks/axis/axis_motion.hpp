@@ -50,6 +50,10 @@ Dynamics symmetric(Dynamics dynamics);
 /// A jerk of 0 is a trapezoid: acceleration that comes in a nanosecond.
 double effective_jerk(double jerk, double acceleration, double deceleration);
 
+/// Of a motion to standstill: with as much jerk, up to `most`, as it takes to be there by the time
+/// the acceleration is 0, so that it does not turn round before.
+Dynamics without_turning(Dynamics dynamics, const MotionState& from, double most);
+
 /// To a position, and with the velocity that it has there on. In the least time from any state.
 struct PointMotion {
     Moment start;
@@ -70,6 +74,7 @@ struct PointMotion {
 
     /// Whether it runs against the direction (its sign) at some time.
     bool turns(double direction) const;
+    double greatest_jerk() const;
 
     /// The same motion, all its positions further by so much.
     void move(double by);
@@ -100,6 +105,7 @@ struct VelocityMotion {
     Moment end() const { return start.after(ramp.duration); }
     /// When the ramp ends.
     MotionState end_state() const;
+    double greatest_jerk() const;
 };
 
 /// The way of a ramp between two velocities of one sign, both at acceleration 0.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "blocks/axis/axis.hpp"
@@ -140,11 +141,24 @@ MotionError Axis::plan_velocity(const Request& request, const Moment& at, const 
     return go_on(wanted, dynamics_of(request), at, from, request.command == Command::stop);
 }
 
+/// With the jerk that keeps a halt from turning round, as far as the axis or what is under way has
+/// so much.
+Dynamics Axis::to_stand(const Dynamics& d, const MotionState& from) const {
+    double most = defaults().jerk;
+    if (doing == Doing::moving_to_point) most = std::max(most, point_motion.greatest_jerk());
+    if (doing == Doing::following_velocity) most = std::max(most, velocity_motion.greatest_jerk());
+    if (extra.velocity != 0 || extra.acceleration != 0)
+        most = std::max(most, added_motion.greatest_jerk());
+    return without_turning(d, from, most);
+}
+
 /// To a velocity and on with it, both with the override; in any case, or where limits allow.
 MotionError Axis::go_on(double with, const Dynamics& d, const Moment& at, const Start& from,
                         bool in_any_case) {
     VelocityMotion next;
-    const MotionError why = motion_error_of(next.begin(from.state, with * factors.velocity, d, at));
+    const double wanted = with * factors.velocity;
+    const MotionError why = motion_error_of(
+        next.begin(from.state, wanted, wanted == 0 ? to_stand(d, from.state) : d, at));
     if (why != MotionError::none) return why;
     if (!in_any_case && !may_begin(next, from)) return MotionError::software_limit;
     velocity_motion = next;
@@ -175,7 +189,7 @@ MotionError Axis::go_to(double to, double end_velocity, const Dynamics& d, const
     VelocityMotion stop;
     PointMotion next;
     const MotionError why = motion_error_of(
-        pauses ? stop.begin(from.state, 0, d, at)
+        pauses ? stop.begin(from.state, 0, to_stand(d, from.state), at)
                : next.begin(from.state, to, end_velocity * factors.velocity, d, at));
     if (why != MotionError::none) return why;
     if (!(pauses ? may_begin(stop, from) : may_begin(next, from)))
@@ -216,11 +230,12 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
     return why;
 }
 
-/// A halt under way is never made longer: with less jerk it would even turn round.
+/// A halt under way is never made longer.
 bool Axis::stands_sooner(const Dynamics& d, const Moment& at, const Start& from) const {
     VelocityMotion anew;
     const double left = velocity_motion.ramp.duration - velocity_motion.start.until(at.time);
-    return anew.begin(from.state, 0, d, at) == PlanResult::ok && anew.ramp.duration < left;
+    return anew.begin(from.state, 0, to_stand(d, from.state), at) == PlanResult::ok &&
+           anew.ramp.duration < left;
 }
 
 /// The motion under way with other limits, or with another way left, and what is blended into it.

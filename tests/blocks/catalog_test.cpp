@@ -495,5 +495,6 @@ TEST_CASE("a kind that the catalogue lacks on purpose is known with what to do i
         CHECK(blocks.instead_of(name).find("servo_drive") != std::string_view::npos);
     }
     CHECK(blocks.instead_of("MC_MEASURINGINPUT").find("MC_TouchProbe") != std::string_view::npos);
+    CHECK(blocks.instead_of("MC_CommandTable").find("BufferMode") != std::string_view::npos);
     CHECK(blocks.instead_of("MC_MoveVelocity").empty());
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "runtime/model/random.hpp"
 #include "tests/blocks/motion/bench.hpp"
 
 using namespace lineshaft;
@@ -223,4 +224,42 @@ TEST_CASE("MC_MotionInPosition keeps the axis inside its software limits") {
     5    .           50            .             .             | 0          none           synchronized_motion 49.9
     6    .           50.1          .             .             | 0          none           synchronized_motion 50
     7    .           .             .             .             | 1          software_limit error_stop          50 )");
+}
+
+TEST_CASE("MC_Halt and MC_Stop with little jerk never turn the axis round, again and again") {
+    MotionBench bench(R"(
+tasks: {main: {every: 1 ms}}
+blocks:
+  x: {type: axis, task: main, default_velocity: 100 mm/s, default_acceleration: 1000 mm/s^2, default_deceleration: 1000 mm/s^2, default_jerk: 5000 mm/s^3}
+  go: {type: MC_MoveVelocity, task: main, Axis: x, Velocity: 100 mm/s, Jerk: 100000 mm/s^3}
+  slower: {type: MC_MoveVelocity, task: main, Axis: x, Velocity: 1 mm/s, Jerk: 100000 mm/s^3}
+  halt: {type: MC_Halt, task: main, Axis: x, Jerk: 1000 mm/s^3}
+  weaker: {type: MC_Halt, task: main, Axis: x, Deceleration: 50 mm/s^2, Jerk: 100 mm/s^3}
+  stop: {type: MC_Stop, task: main, Axis: x, Deceleration: 50 mm/s^2, Jerk: 100 mm/s^3}
+)");
+    lineshaft::Random random(1, "halts");
+    for (int round = 0; round < 60; ++round) {
+        const double sign = random.below(2) == 0 ? -1 : 1;
+        bench.restart();
+        bench.step(2);
+        bench.set("go.Velocity", sign * 100);
+        bench.set("slower.Velocity", sign);
+        bench.set("go.Execute", true);
+        bench.step(200);
+        bench.set("slower.Execute", true);
+        bench.step(2 + static_cast<std::int64_t>(random.below(110)));
+        for (const char* stop : {"halt.Execute", "weaker.Execute", "stop.Execute"}) {
+            bench.set(stop, true);
+            for (auto left = random.below(60); left > 0; --left) {
+                bench.step();
+                REQUIRE(bench.number("x.velocity") * sign >= -1e-9);
+            }
+        }
+        while (!bench.is("stop.Done")) {
+            bench.step();
+            INFO("round " << round << ", at " << bench.now() << " ms");
+            REQUIRE(bench.number("x.velocity") * sign >= -1e-9);
+            REQUIRE(bench.now() < 20'000);
+        }
+    }
 }
