@@ -562,6 +562,35 @@ def test_structured_text_tests():
     except Refused as why:
         assert "adds, adds wrong" in str(why), why
     client.end()
+    suite = folder / "suite.TcPOU"
+    suite.write_text('<?xml version="1.0"?>\n<TcPlcObject><POU Name="MAIN"><Declaration>PROGRAM MAIN</Declaration>'
+                     "<Implementation><ST>TcUnit.RUN();</ST></Implementation></POU></TcPlcObject>\n")
+    client = Client(lineshaft, suite, "--test", "adds")
+    client.request("initialize")
+    try:
+        raise AssertionError(client.request("launch"))
+    except Refused as why:
+        assert "lineshaft new suites --from" in str(why), why
+    client.end()
+
+
+def test_suites():
+    """RUN of TcUnit calls suites, so that a breakpoint in a test stops there."""
+    suite = folder / "suite.st"
+    suite.write_text("FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nAdds();\nMETHOD Adds\nTEST('adds');\n"
+                     "AssertEquals_INT(3, 1 + 2, 'adds');\nTEST_FINISHED();\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+                     "PROGRAM MAIN\nVAR suites : ARRAY[1..2] OF Suite; END_VAR\nTcUnit.RUN();\nEND_PROGRAM\n")
+    whole = folder / "suite.yaml"
+    whole.write_text("lineshaft: 1\nsources: [suite.st]\ntasks: {main: {every: 10 ms}}\nrun: {for: 30 ms}\nblocks:\n"
+                     "  MAIN: {type: MAIN, task: main}\n")
+    client = Client(lineshaft)
+    client.launch(whole, {suite: [5]})
+    for _ in range(2):
+        client.event("stopped")
+        assert client.line() == ("Suite.Adds", 5), client.stack()
+        client.request("continue", threadId=1)
+    assert client.event("exited") == {"exitCode": 0}  # both are finished in the first cycle
+    client.end()
 
 
 def test_calls_that_meet_themselves():

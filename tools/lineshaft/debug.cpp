@@ -112,7 +112,12 @@ std::optional<FoundTest> find_test(const std::string& path, const std::string& n
                                    Diagnostics& out) {
     std::optional<FoundTest> found;
     std::vector<std::string> names;
+    std::string of_suites;
     for (const TestFile& tests : find_tests(path, {})) {
+        if (runs_suites(tests)) {
+            of_suites = tests.path;
+            continue;
+        }
         Diagnostics wrong;
         const auto file = read_source(tests.path, wrong);
         if (file && !tests.is_named && !has_tests(file)) continue;
@@ -126,7 +131,13 @@ std::optional<FoundTest> find_test(const std::string& path, const std::string& n
             }
         if (tests.is_named && !wrong.empty()) return out = wrong, std::nullopt;
     }
-    if (!found)
+    if (!found && !of_suites.empty())
+        out.add(code::unusable_option, {},
+                fmt::format("{} has suites of TcUnit, which its program runs", of_suites),
+                fmt::format("write 'lineshaft new suites --from {}', and debug suites.yaml with a "
+                            "breakpoint in the test",
+                            of_suites));
+    else if (!found)
         out.add(code::unusable_option, {}, fmt::format("{} has no TEST '{}'", path, name),
                 fmt::format("there are: {}", fmt::join(names, ", ")));
     return found;

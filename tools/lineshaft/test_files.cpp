@@ -440,6 +440,10 @@ std::vector<st::TestSuite> compile_tests(const TestFile& tests,
     return suites;
 }
 
+bool runs_suites(const TestFile& tests) {
+    return is_suites(tests.path);
+}
+
 std::vector<std::string> test_names(const TestFile& file, const TestOptions& options) {
     std::vector<std::string> names;
     if (is_suites(file.path)) {  // which tests there are is known when they ran

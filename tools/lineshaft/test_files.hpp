@@ -39,6 +39,9 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
 /// Whether a file has TESTs, or fixtures of SIMATIC AX.
 bool has_tests(const std::shared_ptr<const SourceFile>& file);
 
+/// Whether it is a file or a project whose tests are suites of TcUnit.
+bool runs_suites(const TestFile& tests);
+
 /// The TESTs of a file, which was read, and its fixtures, each for itself; without those that have
 /// something wrong, which is told.
 std::vector<st::TestSuite> compile_tests(const TestFile& tests,

@@ -133,8 +133,14 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
 }
 
 /// A number that no value has, which CODESYS lets a variable have: here a fault where it is
-/// reached.
+/// reached, and nothing that a variable begins with.
 bool convert_to_none(Checking& c, Expression*& e, const Type& to) {
+    if (c.beginning.variable) {
+        c.fail(code::value_out_of_range, e->place,
+               fmt::format("no value of {} is {}", to.name, to_string(e->constant.integer)),
+               "declare a value for it, or the variable as an INT");
+        return become(c, e, to, {});
+    }
     c.warn(code::value_out_of_range, e->place,
            fmt::format("no value of {} is {}, and a fault comes where that is assigned", to.name,
                        to_string(e->constant.integer)),

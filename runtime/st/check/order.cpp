@@ -196,7 +196,38 @@ void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
     }
 }
 
-void find_by_instances(Checking& c) {
+/// A call of a method or a body of an instance that is global.
+bool is_of_global(const Expression& call) {
+    if (call.kind != E::call || !call.routine || !call.routine->owner) return false;
+    const Expression& callee = *call.operands[0];
+    if (callee.kind != E::member) return false;
+    const Variable* root = root_of(*callee.operands[0]).variable;
+    return root && root->space == Space::global;
+}
+
+using Calls = std::unordered_set<const Expression*>;
+
+/// A method of a global instance that another calls which it is made of: the frame of neither is
+/// known before the other, so that the instance finds what is called. The calls that are so; empty
+/// if nothing is wrong without.
+Calls loosen_calls_of_globals(Checking& c, const Ordering& o) {
+    Calls loosened;
+    if (std::ranges::all_of(o.rounds, &Round::recurs)) return loosened;
+    std::unordered_map<const Routine*, std::vector<const Expression*>> calls;
+    for (const Expression& e : c.tree.expressions)
+        if (is_of_global(e)) calls[e.routine].push_back(&e);
+    for (Routine& routine : c.checked.routines)
+        for (Called& called : routine.calls)
+            for (const Expression* e : calls[called.routine])
+                if (called.is_call && e->place.source == called.place.source &&
+                    e->place.begin == called.place.begin) {
+                    called.through_reference = true;
+                    loosened.insert(e);
+                }
+    return loosened;
+}
+
+void find_by_instances(Checking& c, const Calls& loosened) {
     bool is_one = false;
     for (Routine& routine : c.checked.routines) {
         for (const Called& called : routine.calls)
@@ -208,7 +239,8 @@ void find_by_instances(Checking& c) {
     if (!is_one) return;
     c.checked.dispatches = true;
     for (Expression& e : c.tree.expressions)
-        if (e.kind == E::call && e.routine && e.routine->is_looped && is_through_reference(e))
+        if (e.kind == E::call && e.routine && e.routine->is_looped &&
+            (is_through_reference(e) || loosened.contains(&e)))
             e.is_dispatched = true;
 }
 
@@ -231,7 +263,9 @@ void depend(Checking& c, const Type* type, Place place, bool through_reference) 
 void order_routines(Checking& c) {
     Ordering o{c};
     while (!order(o)) continue;
-    find_by_instances(c);
+    const Calls loosened = loosen_calls_of_globals(c, o);
+    while (!loosened.empty() && !order(o)) continue;
+    find_by_instances(c, loosened);
     const bool is_right = std::ranges::all_of(o.rounds, &Round::recurs);
     if (is_right && !o.rounds.empty()) note_plain_rings(o);
     if (c.checked.dispatches)
