@@ -7,6 +7,7 @@
 #include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/s5.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -394,7 +395,7 @@ static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
-    if (coerce_dtl(c, e, to)) return true;
+    if (coerce_dtl(c, e, to) || coerce_s5time(c, e, to)) return true;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
     const bool may_point = e->kind == E::self && (to.is_integer() || to.is_bits());
     if (to.is_reference() || e->type->is_reference() || may_point)

@@ -69,13 +69,15 @@ const Expression* root_of(Checking& c, const Expression& member) {
     return is_free ? root : nullptr;
 }
 
-/// Sources in SCL use it without saying so.
-void open_siemens_motion(Checking& c) {
+/// Sources in SCL use them without saying so.
+void open_siemens(Checking& c) {
     static const Scope whole_source = {.end = std::numeric_limits<std::uint32_t>::max()};
-    if (!is_namespace(c, siemens_motion)) return;
+    Prefixes opened{&whole_source};
+    for (const std::string_view library : {siemens_motion, siemens_step7})
+        if (is_namespace(c, library)) opened.paths.push_back(library);
+    if (opened.paths.empty()) return;
     for (const auto& source : c.tree.sources)
-        if (&source->dialect == &scl)
-            c.prefixes[source.get()].push_back({&whole_source, {siemens_motion}});
+        if (&source->dialect == &scl) c.prefixes[source.get()].push_back(opened);
 }
 
 }  // namespace
@@ -121,7 +123,7 @@ void collect_namespaces(Checking& c) {
             }
         }
     }
-    open_siemens_motion(c);
+    open_siemens(c);
 }
 
 Token name_with_namespace(Checking& c, Token declared) {

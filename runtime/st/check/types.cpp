@@ -9,6 +9,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
+#include "runtime/st/types/s5.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -270,6 +271,9 @@ const Type* resolve_name(Checking& c, const Token& name) {
                                            : in_dialect(type, name.place);
     if (name.place.dialect().is_loose && !name.quoted)
         if (const Type* type = find_codesys_type(name.text)) return type;
+    const bool has_s5 = name.place.dialect().vendor == Vendor::siemens || is_library(name);
+    if (has_s5 && !name.quoted && !c.look_up(&Names::types, name) && !c.find_routine(name))
+        if (const Type* type = find_s5_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
         const Type* type = resolve_declared(c, *named);
         c.note(name.place, *named);

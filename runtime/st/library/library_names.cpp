@@ -84,7 +84,8 @@ LibraryNames::Index make_index(const Catalog& catalog) {
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
-            if (file.library == siemens_motion) index.of_siemens.emplace(name, &file);
+            if (file.library == siemens_motion || file.library == siemens_step7)
+                index.of_siemens.emplace(name, &file);
             if (is_open(file) && !is_everyday(name)) index.by_name[name].push_back(&file);
         }
     }
