@@ -58,13 +58,17 @@ void lack_of_siemens(Catalog& blocks) {
         blocks.lack(cam, "take MC_DigitalCamSwitch, which has several cams and tracks");
     for (const char* drive : {"MC_SetAxisSTW", "MC_SaveAbsoluteEncoderData", "MC_SetSensor"})
         blocks.lack(drive, "leave it out: an axis has no control word and no encoders here");
-    blocks.lack("MC_GearInVelocity", "take MC_GearIn, which couples velocities");
     for (const char* offset : {"MC_OffsetRelative", "MC_OffsetAbsolute"})
         blocks.lack(offset, "take MC_MoveSuperimposed, which adds a distance to the slave's way");
     blocks.lack("MC_LeadingValueAdditive", "take MC_CombineAxes, which adds a second master");
     blocks.lack("MC_MotionInVelocity",
                 "take MC_MoveVelocity, or MC_MotionInPosition with set-points of the program");
     blocks.lack("MC_MotionInSuperimposed", "take MC_MoveSuperimposed");
+    blocks.lack("MC_SynchronizedMotionSimulation",
+                "leave it out: an axis that loses its power leaves its gear or its cam");
+    for (const char* cam :
+         {"MC_GetCamLeadingValue", "MC_GetCamFollowingValue", "MC_GetCamFollowingValueCyclic"})
+        blocks.lack(cam, "reckon it of the points of the cam in the program");
     for (const char* cam : {"MC_InterpolateCam", "MC_CopyCamData"})
         blocks.lack(cam, "write the points of the cam as a cam_table in the program");
 }

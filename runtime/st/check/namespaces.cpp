@@ -115,8 +115,9 @@ void collect_namespaces(Checking& c) {
                      p = before_last_point(p))
                     made.paths.push_back(p);
                 for (const Token& used : s->usings) {
-                    if (is_namespace(c, used.text) || is_namespace_of_assertions(used.text))
-                        made.paths.push_back(used.text);
+                    const std::string_view path = library_called(used.text);
+                    if (is_namespace(c, path) || is_namespace_of_assertions(path))
+                        made.paths.push_back(path);
                     else
                         c.unknown_usings.push_back(used), made.is_whole = false;
                 }
