@@ -27,7 +27,7 @@ bool call_of_s5(Checking& c, Expression*& e, const Type& type, std::string_view 
                                   is_timer ? "timer" : "counter", e->place.text()),
                       is_timer ? "start it with S_ODT or another one of these"
                                : "count with S_CU, S_CD or S_CUD");
-    Expression* callee = make_name(c, *e, c.checked.names.emplace_back(full));
+    Expression* callee = make_function_name(c, *e, c.checked.names.emplace_back(full));
     e = make_call(c, *e, callee, {{.value = e}});
     return true;
 }
