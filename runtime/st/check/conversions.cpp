@@ -424,7 +424,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
     const bool are_alike = from.kind == Kind::array && to.kind == Kind::array &&
                            from.count() == to.count() && same_type(*from.element, *to.element);
-    if (are_alike && e->place.dialect().is_loose) return true;
+    if ((are_alike && e->place.dialect().is_loose) || has_same_form(c, e->place, from, to))
+        return true;
     if (to.is_subrange && from.is_scalar() &&
         (widens(from, to) || is_same_pattern(from, to.plain()))) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
