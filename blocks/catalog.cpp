@@ -94,7 +94,6 @@ void lack_of_siemens(Catalog& blocks) {
          {"MC_OutputCam", "MC_CamTrack"}},
         {"leave it out: an axis has no control word and no encoders here",
          {"MC_SetAxisSTW", "MC_SaveAbsoluteEncoderData", "MC_SetSensor"}},
-        {"take MC_GearIn, which couples velocities", {"MC_GearInVelocity"}},
         {"take MC_MoveSuperimposed, which adds a distance to the slave's way",
          {"MC_OffsetRelative", "MC_OffsetAbsolute"}},
         {"take MC_CombineAxes, which adds a second master", {"MC_LeadingValueAdditive"}},
@@ -104,7 +103,7 @@ void lack_of_siemens(Catalog& blocks) {
         {"write the points of the cam as a cam_table in the program",
          {"MC_InterpolateCam", "MC_CopyCamData"}},
         {"find it in the points that the program has of its cam",
-         {"MC_GetCamLeadingValue", "MC_GetCamFollowingValue"}},
+         {"MC_GetCamLeadingValue", "MC_GetCamFollowingValue", "MC_GetCamFollowingValueCyclic"}},
         {"take MC_WriteParameter: 9 is the velocity, 13 the acceleration, 15 the deceleration, 17 "
          "the jerk of commands that give none",
          {"MC_ChangeDynamic", "MC_WriteParam"}},

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cstring>
 #include <tuple>
+#include <unordered_map>
 
 #include <fmt/format.h>
+
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft {
 
@@ -166,16 +169,29 @@ void add_views(const Net& net, Machine& machine) {
     }
 }
 
+/// All that BlockType::find_readable gives, in their order: in a time that grows as their number.
+std::vector<const Field*> readable_fields(const BlockType& type) {
+    std::unordered_map<std::string, const Field*> by_name;
+    by_name.reserve(type.fields.size());
+    for (const bool is_own : {true, false})
+        for (const Field& f : type.fields)
+            if ((f.direction == Direction::output || f.direction == Direction::local) == is_own)
+                by_name.emplace(lower(f.name), &f);
+    std::vector<const Field*> all;
+    for (const Field& f : type.fields)
+        if (f.direction != Direction::in_out && by_name.at(lower(f.name)) == &f) all.push_back(&f);
+    return all;
+}
+
 void add_signals(const Net& net, Machine& machine) {
     for (const InputNode& input : net.inputs)
         if (input.signal) machine.signals.push_back(machine.placed(*input.signal));
     for (std::size_t i = 0; i < net.instances.size(); ++i) {
         const Instance& block = net.instances[i];
         if (!block.known()) continue;
-        for (const Field& field : block.type->fields)
-            if (block.type->find_readable(field.name) == &field)
-                machine.signals.push_back(
-                    machine.placed(net.signal(net.port(static_cast<int>(i), field))));
+        for (const Field* field : readable_fields(*block.type))
+            machine.signals.push_back(
+                machine.placed(net.signal(net.port(static_cast<int>(i), *field))));
     }
     for (const OutputNode& output : net.outputs) {
         if (!output.shows) continue;

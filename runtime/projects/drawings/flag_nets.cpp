@@ -43,11 +43,18 @@ std::string name_of(std::string_view part, bool is_negated) {
     return (is_negated && is_any(part, {"Contact", "Coil"}) ? "I_" : "") + std::string(part);
 }
 
+bool is_s5_timer(std::string_view part) {
+    return is_any(
+        part, {"S_PULSE", "S_PEXT", "S_ODT", "S_ODTS", "S_OFFDT", "Sp", "Se", "Sd", "Ss", "Sf"});
+}
+
 /// Where power comes in: the first of them that is connected.
 std::vector<std::string_view> power_pins(std::string_view part) {
     if (is_any(part, {"TON", "TOF", "TP", "TONR"})) return {"IN"};
     if (is_any(part, {"CTU", "CTUD"})) return {"CU"};
-    if (same_name(part, "CTD")) return {"CD"};
+    if (is_any(part, {"CTD", "S_CD"})) return {"CD"};
+    if (is_any(part, {"S_CU", "S_CUD"})) return {"CU"};
+    if (is_s5_timer(part)) return {"S"};
     if (same_name(part, "Sr")) return {"s"};
     if (same_name(part, "Rs")) return {"r"};
     if (is_any(part, {"A", "O", "X"})) return {};
@@ -73,7 +80,8 @@ bool is_left_out(std::string_view part, std::string_view pin) {
 bool is_power(std::string_view part, std::string_view pin) {
     const std::string small = lower(part);
     if (same_name(pin, "eno")) return true;
-    if (is_any(part, {"TON", "TOF", "TP", "TONR", "CTU", "CTD", "Sr", "Rs"}))
+    if (is_s5_timer(part) || is_any(part, {"TON", "TOF", "TP", "TONR", "CTU", "CTD", "Sr", "Rs",
+                                           "S_CU", "S_CD", "S_CUD"}))
         return same_name(pin, "Q");
     if (same_name(part, "CTUD")) return same_name(pin, "QU");
     return small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||

@@ -186,8 +186,11 @@ Value multiplexer(Running& r) {
     return result_of(r, "MUX", given);
 }
 
-/// `in1 * in2`, with what stands at the pins.
-Value formula(Running& r) {
+namespace {
+
+/// `in1 * in2`, with what stands at the pins, or `TO_LREAL` of that; `has_words`: there is more in
+/// it than these, numbers and signs.
+Value with_pins(const Running& r, std::string_view before, bool& has_words) {
     const auto is_part = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
     const std::string_view text = r.it.formula;
     Value made{.text = {}, .form = Value::Form::other};
@@ -196,12 +199,68 @@ Value formula(Running& r) {
         made.text.write({at, word}, r.it.place);
         at = std::find_if_not(word, text.end(), is_part);
         const auto* pin = word == at ? nullptr : r.it.find({word, at});
-        if (pin && !pin->is_output && !pin->name.empty())
+        if (pin && !pin->is_output && !pin->name.empty()) {
+            made.text.write(before, r.it.place);
+            if (!before.empty()) made.text.write("(", r.it.place);
             made.text.append(enclosed(r.typed(pin->value), r.it.place));
-        else
+            if (!before.empty()) made.text.write(")", r.it.place);
+        } else {
+            has_words = has_words || (word != at && is_letter(*word));
             made.text.write({word, at}, r.it.place);
+        }
     }
-    return result(r, made);
+    return made;
+}
+
+/// Of a whole number; 0 of any other type.
+int bits_of(std::string_view type) {
+    static constexpr std::pair<std::string_view, int> all[] = {
+        {"sint", 8}, {"usint", 8}, {"int", 16}, {"uint", 16}, {"dint", 32}, {"udint", 32}};
+    for (const auto& [name, bits] : all)
+        if (same_name(name, type)) return bits;
+    return 0;
+}
+
+/// Whether what a box calculates is a number of its type: what is beyond its bounds comes out by a
+/// multiple of their distance away. Empty: it cannot fail.
+Value is_calculated(const Running& r) {
+    std::string type = type_of(r.it, "SrcType");
+    if (type.empty()) type = type_of(r.it, "value_type");
+    bool has_words = false;
+    const Value plain = with_pins(r, "", has_words);
+    const bool is_real = same_name(type, "real") || same_name(type, "lreal");
+    const int bits = bits_of(type);
+    if (!is_real && (bits == 0 || has_words)) return {};
+    Value made{.text = {}, .form = Value::Form::other};
+    if (is_real) {
+        made.text.write("IS_VALID(", r.it.place);
+        made.text.append(plain.text);
+        made.text.write(")", r.it.place);
+        return made;
+    }
+    made.text.write("ABS((", r.it.place);
+    made.text.append(with_pins(r, "TO_LREAL", has_words).text);
+    made.text.write(") - TO_LREAL(", r.it.place);
+    made.text.append(plain.text);
+    made.text.write(fmt::format(")) < {}.0", std::int64_t{1} << (bits - 1)), r.it.place);
+    return made;
+}
+
+}  // namespace
+
+Value formula(Running& r) {
+    bool has_words = false;
+    const Value made = with_pins(r, "", has_words);
+    const Value succeeds = r.tells() ? is_calculated(r) : Value{};
+    if (succeeds.is_empty()) return result(r, made);
+    const Value power = r.enable(), behind = r.wire();
+    r.assign(behind, r.word("FALSE"));
+    r.open(power);
+    r.assign(behind, succeeds);
+    for (const auto& pin : r.it.pins)
+        if (pin.is_output) r.assign(pin.value, made);
+    r.close(power);
+    return behind;
 }
 
 // What is executed in each scan, and has power as an input.

@@ -29,4 +29,11 @@ Value called(Running& r);
 Value other_function(Running& r);
 Value text_conversion(Running& r);
 
+// s5_boxes.cpp: timers and counters of the controller itself.
+
+Value s5_timer(Running& r);
+Value s5_counter(Running& r);
+Value s5_timer_coil(Running& r);
+Value s5_counter_coil(Running& r);
+
 }  // namespace lineshaft::projects::s7

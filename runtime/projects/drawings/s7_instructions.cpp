@@ -307,6 +307,10 @@ constexpr Row rows[] = {
     {up_counter, " ctu "},
     {down_counter, " ctd "},
     {up_down_counter, " ctud "},
+    {s5_timer, " s_pulse s_pext s_odt s_odts s_offdt sp se sd ss sf "},
+    {s5_counter, " s_cu s_cd s_cud "},
+    {s5_timer_coil, " sp_coil se_coil sd_coil ss_coil sf_coil spcoil secoil sdcoil sscoil sfcoil "},
+    {s5_counter_coil, " cu_coil cd_coil sc_coil cucoil cdcoil sccoil "},
 };
 
 const Row* row_of(std::string_view name) {

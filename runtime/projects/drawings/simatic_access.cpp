@@ -135,11 +135,13 @@ void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool i
     write_name(to, constant, !is_local || !is_plain(file_.plain(constant.attribute("Name"))));
 }
 
-/// Bits from the beginning of an area.
+/// Bits from the beginning of an area; of timers and counters their number.
 void SimaticAccess::write_address(Excerpts& to, pugi::xml_node address) const {
     const std::string area = file_.plain(address.attribute("Area"));
     const std::string type = lower(file_.plain(address.attribute("Type")));
     const std::uint64_t bits = address.attribute("BitOffset").as_ullong();
+    if (area == "Timer" || area == "Counter")
+        return to.write(fmt::format("{}{}", area[0], bits), place(address));
     const char letter = area == "Input" ? 'I' : area == "Output" ? 'Q' : 'M';
     const char* size = type == "byte"                      ? "B"
                        : type == "word" || type == "int"   ? "W"

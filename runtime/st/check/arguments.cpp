@@ -62,6 +62,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         value->place.dialect().enumerations_are_numbers && is_kept_as(given, *type);
     const bool fits =
         same_type(given, *type) || derives || is_number ||
+        (parameter.section == Section::output && has_same_form(c, value->place, *type, given)) ||
         (parameter.section == Section::in_out
              ? texts && type->is_open
              : texts || is_split ||

@@ -7,17 +7,7 @@
 
 namespace lineshaft::st {
 
-namespace {
-
-/// Also of an ARRAY[*], which is where a pointer is.
-bool is_element(const Expression& e) {
-    const bool is_of_open = e.kind == E::deref && e.operands[0]->type->is_open_array();
-    return is_of_open || (e.kind == E::index && !e.is_character());
-}
-
-/// A counter that nobody can name.
-Variable& counter(Checking& c) {
-    constexpr std::string_view name = "%moved";
+Variable& counter(Checking& c, std::string_view name) {
     Routine& routine = *c.routine;
     if (Variable* known = find_in(routine.names, name)) return *known;
     Variable& variable = c.make_variable(routine, routine.pou->name, name, &lint_type);
@@ -26,10 +16,66 @@ Variable& counter(Checking& c) {
     return variable;
 }
 
+std::optional<Bounds> bounds_of_array(Checking& c, Expression* array) {
+    const Type* type = check(c, array);
+    if (!type) return {};
+    if (type->kind == Kind::array && !type->has_inner)
+        return Bounds{make_constant(c, *array, lint_type, {.integer = type->lower}),
+                      make_constant(c, *array, lint_type, {.integer = type->upper})};
+    if (!type->is_open_array() || type->dimensions != 1) return {};
+    const auto bound = [&](std::string_view function) {
+        Expression* first = make_constant(c, *array, lint_type, {.integer = 1});
+        Expression* made = make_call(c, *array, make_function_name(c, *array, function),
+                                     {{.value = array}, {.value = first}});
+        check(c, made);
+        convert(c, made, lint_type);
+        return made;
+    };
+    return Bounds{bound("LOWER_BOUND"), bound("UPPER_BOUND")};
+}
+
+Expression* elements_from(Checking& c, const Expression& element) {
+    if (element.kind != E::index || element.arguments.size() != 1) return nullptr;
+    Expression* index = element.arguments[0].value;
+    if (has_call(*index) || has_call(*element.operands[0])) return nullptr;
+    const auto bounds = bounds_of_array(c, element.operands[0]);
+    if (!bounds || !check(c, index) || !(index->type->is_integer() || index->type->is_bits()))
+        return nullptr;
+    become_lint(c, index);
+    Expression* one = make_constant(c, element, lint_type, {.integer = 1});
+    return make_binary(c, element.place, element.place, Word::minus,
+                       make_binary(c, element.place, element.place, Word::plus, bounds->upper, one),
+                       index);
+}
+
+Expression* stays_within(Checking& c, const Expression& like, std::string_view function,
+                         Expression* in, Expression* count, Expression* out) {
+    const bool fills = function.find("FILL") != function.npos;
+    if (!in || !count || !out || has_call(*count) || !check(c, count)) return nullptr;
+    if (!count->type->is_integer() && !count->type->is_bits()) return nullptr;
+    become_lint(c, count);
+    Expression* all = nullptr;
+    for (Expression* place : {fills ? nullptr : in, out}) {
+        Expression* rest = place ? elements_from(c, *place) : nullptr;
+        if (!rest) continue;
+        Expression* fits = make_binary(c, like.place, like.place, Word::less_or_equal, count, rest);
+        all = all ? make_binary(c, like.place, like.place, Word::and_, all, fits) : fits;
+    }
+    return all;
+}
+
+namespace {
+
+/// Also of an ARRAY[*], which is where a pointer is.
+bool is_element(const Expression& e) {
+    const bool is_of_open = e.kind == E::deref && e.operands[0]->type->is_open_array();
+    return is_of_open || (e.kind == E::index && !e.is_character());
+}
+
 /// `FOR i := 0 TO count - 1 DO ADR(to)[i] := value; END_FOR`
 Statement* fill(Checking& c, const Statement& s, Expression* value, Expression* count,
                 Expression* to) {
-    Variable& i = counter(c);
+    Variable& i = counter(c, "%moved");
     Expression* element = make(c, E::index, *to);
     element->operands[0] = make_call(c, "ADR", to);
     element->arguments.push_back({.value = make_use(c, *to, i)});
@@ -56,7 +102,7 @@ bool is_alike(const Expression& e) {
 /// `moved := count; IF moved > 0 THEN of.first := value; END_IF; IF moved > 1 THEN ...`
 Statement* fill_members(Checking& c, const Statement& s, Expression* value, Expression* count,
                         Expression* first) {
-    Variable& left = counter(c);
+    Variable& left = counter(c, "%moved");
     Block made{make_assignment(c, s.place, make_use(c, *first, left), count)};
     const auto& members = first->operands[0]->type->members;
     auto member = std::ranges::find(members, first->variable);
@@ -88,6 +134,7 @@ void rewrite_block_move(Checking& c, Statement*& s) {
     Expression *value = call.arguments[0].value, *count = call.arguments[1].value,
                *to = call.arguments[2].value;
     const bool fills = call.standard->name.find("FILL") != std::string_view::npos;
+    Expression* fits = stays_within(c, call, call.standard->name, value, count, to);
     if (!check(c, to) || !check(c, value, to->type) || !check(c, count)) return;
     const bool fills_members = fills && is_alike(*to);
     if (!(is_element(*to) || fills_members) ||
@@ -102,63 +149,22 @@ void rewrite_block_move(Checking& c, Statement*& s) {
         return (void)c.fail(code::type_does_not_fit, count->place, "COUNT is a whole number");
     if (fills_members && !coerce(c, value, *to->type)) return;
     become_lint(c, count);
-    s = fills_members ? fill_members(c, *s, value, count, to)
-        : fills       ? fill(c, *s, value, count, to)
-                      : move(c, call, value, count, to);
+    Statement* made = fills_members ? fill_members(c, *s, value, count, to)
+                      : fills       ? fill(c, *s, value, count, to)
+                                    : move(c, call, value, count, to);
+    if (fits && !check(c, fits, &bool_type)) return;
+    if (fits && is_constant(*fits) && fits->constant.integer == 0)
+        c.warn(code::value_out_of_range, s->place,
+               fmt::format("{} does nothing: there are fewer elements than COUNT from there on",
+                           call.standard->name),
+               "take a lesser COUNT, or begin before");
+    s = fits ? make_if(c, s->place, fits, {made}, {}) : made;
     check(c, s);
-}
-
-namespace {
-
-Expression* given_as(const Expression& call, std::string_view name) {
-    const Argument* found = find_called(call.arguments, name, &Argument::name);
-    return found ? found->value : nullptr;
-}
-
-/// The element that many behind the first.
-Expression* element_behind(Checking& c, const Expression& call, Expression* array,
-                           Expression* behind) {
-    const Type* type = check(c, array);
-    if (!type || !check(c, behind)) return nullptr;
-    if (type->kind != Kind::array || type->is_open)
-        return c.fail(code::type_does_not_fit, array->place,
-                      fmt::format("MOVE_BLK_VARIANT takes arrays, not {}", describe(*type)));
-    become_lint(c, behind);
-    Expression* lower = make_constant(c, *array, lint_type, {.integer = type->lower});
-    Expression* element = make(c, E::index, call);
-    element->operands[0] = array;
-    element->arguments.push_back(
-        {.value = make_binary(c, array->place, array->place, Word::plus, lower, behind)});
-    return element;
-}
-
-}  // namespace
-
-bool rewrite_variant_move(Checking& c, Statement*& s) {
-    const Expression& call = *s->value;
-    constexpr std::string_view names[] = {"SRC", "COUNT", "SRC_INDEX", "DEST_INDEX", "DEST"};
-    for (const std::string_view name : names)
-        if (!given_as(call, name))
-            return c.fail(code::wrong_arguments, call.place,
-                          fmt::format("there is nothing at {} of MOVE_BLK_VARIANT", name)),
-                   true;
-    Expression *from = element_behind(c, call, given_as(call, "SRC"), given_as(call, "SRC_INDEX")),
-               *to = element_behind(c, call, given_as(call, "DEST"), given_as(call, "DEST_INDEX"));
-    if (!from || !to) return true;
-    Block made{make_call_statement(
-        c, make_call(c, call, make_name(c, call, "MOVE_BLK"),
-                     {{.value = from}, {.value = given_as(call, "COUNT")}, {.value = to}}))};
-    if (s->kind == S::assign)
-        made.push_back(
-            make_assignment(c, s->place, s->target, make_constant(c, call, any_integer_type, {})));
-    s = make_sequence(c, s->place, std::move(made));
-    check(c, s);
-    return true;
 }
 
 void rewrite_demux(Checking& c, Statement*& s) {
     const StandardFunction& f = *s->value->standard;
-    Expression* otherwise = given_as(*s->value, "OUTELSE");
+    Expression* otherwise = argument_of(*s->value, "OUTELSE");
     std::vector<Argument> others;
     std::ranges::copy_if(s->value->arguments, std::back_inserter(others),
                          [&](const Argument& given) { return given.value != otherwise; });
@@ -169,7 +175,7 @@ void rewrite_demux(Checking& c, Statement*& s) {
     if (!number->type->is_integer() && !number->type->is_bits())
         return (void)c.fail(code::type_does_not_fit, number->place, "K is a whole number");
     become_lint(c, number);
-    Variable& chosen = counter(c);
+    Variable& chosen = counter(c, "%moved");
     const auto put = [&](Expression* to) {
         return Block{make_assignment(c, s->place, to, make_copy(c, *in))};
     };

@@ -237,7 +237,8 @@ void ignore(Checking& c, const Type& type, Argument& argument, std::optional<dou
                       "a simulated axis does the same with and without");
     c.fail(code::not_supported, argument.name.place,
            fmt::format("'{}' of {} is not supported", argument.name.text, type.name),
-           fmt::format("leave it out: it is as if it were {}", *only == 0 ? "FALSE" : "100"));
+           *only == 0 ? std::string("leave it out: it is as if it were FALSE")
+                      : fmt::format("leave it out: it is as if it were {}", *only));
 }
 
 void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
@@ -341,6 +342,22 @@ std::string_view standard_name(const Type& type, std::string_view name) {
     return find_member(type, other) ? other : name;
 }
 
+/// `Motor.Motor_1(...)` of STEP 7 V5: the instance data block of that FUNCTION_BLOCK is called.
+static void name_instance_of_block(Checking& c, Expression*& e) {
+    const Expression& callee = *e->operands[0];
+    if (callee.kind != E::member || callee.operands[0]->kind != E::name ||
+        e->place.dialect().vendor != Vendor::siemens)
+        return;
+    const Token& block = callee.operands[0]->token;
+    const Routine* routine = find_variable(c, block) ? nullptr : c.find_routine(block);
+    if (!routine || !routine->has_instances()) return;
+    Expression* instance = make_name(c, *callee.operands[0], callee.token.text);
+    const Variable* found = find_variable(c, instance->token);
+    if (found && found->type && found->type->kind == Kind::block &&
+        found->type->routine == routine)
+        e = make_call(c, *e, instance, e->arguments);
+}
+
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
     if (Expression* assertion = c.has_tests ? assertion_call(c, *e) : nullptr) {
         e = assertion;
@@ -348,6 +365,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     }
     if (const auto name = qualified_name(c, *e->operands[0]))
         e = make_call(c, *e, make_name(c, *e->operands[0], name->text), e->arguments);
+    name_instance_of_block(c, e);
     const Expression& callee = *e->operands[0];
     if (callee.kind == E::member) name_block_of_list(c, *e->operands[0]);
     if (refuse_member_of_namespace(c, callee)) return nullptr;

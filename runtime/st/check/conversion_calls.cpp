@@ -4,6 +4,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/types/s5.hpp"
 
 namespace lineshaft::st {
 
@@ -113,6 +114,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     const auto find = [&](std::string_view text) -> const Type* {
         if (const Type* type = find_elementary(text)) return in_dialect(type, e->place);
         if (const Type* type = find_codesys_type(text)) return type;
+        if (same_name(text, s5time_type.name)) return &s5time_type;
         Token named = e->token;
         named.text = text;
         is_told |= c.is_lost(named);

@@ -7,6 +7,7 @@
 #include "runtime/st/check/implicit_checks.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/s5.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -400,7 +401,7 @@ static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
-    if (coerce_dtl(c, e, to)) return true;
+    if (coerce_dtl(c, e, to) || coerce_s5time(c, e, to)) return true;
     if (coerce_enumeration(c, e, to) || coerce_to_catalog(c, e, to)) return true;
     const bool may_point = e->kind == E::self && (to.is_integer() || to.is_bits());
     if (to.is_reference() || e->type->is_reference() || may_point)
@@ -429,7 +430,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
     const bool are_alike = from.kind == Kind::array && to.kind == Kind::array &&
                            from.count() == to.count() && same_type(*from.element, *to.element);
-    if (are_alike && e->place.dialect().is_loose) return true;
+    if ((are_alike && e->place.dialect().is_loose) || has_same_form(c, e->place, from, to))
+        return true;
     if (to.is_subrange && from.is_scalar() &&
         (widens(from, to) || is_same_pattern(from, to.plain()))) {
         if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))

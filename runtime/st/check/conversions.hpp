@@ -16,6 +16,9 @@ bool counts_bits(const Type& from, const Type& to, const Place& place);
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.
 bool coerce(Checking& c, Expression*& e, const Type& to);
+/// In SCL: arrays of as many elements, and a structure without a name and one with the same
+/// members, are assigned to each other. Other bounds are told.
+bool has_same_form(Checking& c, const Place& at, const Type& from, const Type& to);
 /// That a value of `to` does not hold every one of what `e` is of.
 void warn_of_loss(Checking& c, const Expression& e, const Type& to);
 /// Makes `e` a value of `to` in any case: a conversion is put in, or a constant converted at once.

@@ -147,10 +147,18 @@ class EnableOutput {
 };
 
 bool can_fail(std::string_view name) {
-    static constexpr std::string_view all[] = {
-        "LIMIT", "MUX",   "DEMUX", "NORM_X", "SCALE_X", "ADD", "SUB", "MUL",  "DIV",  "EXPT",
-        "SQR",   "SQRT",  "LN",    "EXP",    "SIN",     "COS", "TAN", "ASIN", "ACOS", "ATAN",
-        "FRAC",  "ROUND", "CEIL",  "FLOOR",  "TRUNC",   "ABS", "MIN", "MAX"};
+    static constexpr std::string_view all[] = {"LIMIT",       "MUX",       "DEMUX",
+                                               "NORM_X",      "SCALE_X",   "ADD",
+                                               "SUB",         "MUL",       "DIV",
+                                               "EXPT",        "SQR",       "SQRT",
+                                               "LN",          "EXP",       "SIN",
+                                               "COS",         "TAN",       "ASIN",
+                                               "ACOS",        "ATAN",      "FRAC",
+                                               "ROUND",       "CEIL",      "FLOOR",
+                                               "TRUNC",       "ABS",       "MIN",
+                                               "MAX",         "MOVE_BLK",  "UMOVE_BLK",
+                                               "FILL_BLK",    "UFILL_BLK", "MOVE_BLK_VARIANT",
+                                               "SCATTER_BLK", "GATHER_BLK"};
     const auto has_name = [&](std::string_view one) { return same_name(one, name); };
     return std::ranges::any_of(all, has_name) || upper(name).find("_TO_") != name.npos;
 }
@@ -165,7 +173,7 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
                         can_fail(callee.token.text);
     if (!is_one) return nullptr;
     for (Argument& each : given) {
-        if (each.is_output) continue;
+        if (each.is_output || callee.token.text.ends_with("_BLK")) continue;
         const bool is_call = has_call(*each.value);
         const Type* type = check(c, each.value);
         if (!is_call || !type || type->is_any()) continue;
@@ -173,6 +181,15 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
         kept.section = Section::temp;
         before.push_back(make_assignment(c, s.place, make_use(c, call, kept), each.value));
         each.value = make_use(c, call, kept);
+    }
+    const std::string name = upper(callee.token.text);
+    if (name == "MOVE_BLK_VARIANT") return moves_variant(c, *make_with(c, call, given), before);
+    if (name == "SCATTER_BLK" || name == "GATHER_BLK")
+        return has_bit_block(c, *make_with(c, call, given));
+    if (name.ends_with("_BLK")) {
+        const Expression& moved = *make_with(c, call, given);
+        return stays_within(c, call, name, argument_of(moved, "IN"), argument_of(moved, "COUNT"),
+                            argument_of(moved, "OUT"));
     }
     Expression* target = s.kind == S::assign ? s.target : nullptr;
     const Type* expected = target ? check(c, target) : nullptr;

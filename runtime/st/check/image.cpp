@@ -1,8 +1,10 @@
 #include "runtime/st/check/image.hpp"
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/check/s5.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
+#include "runtime/st/types/s5.hpp"
 
 namespace lineshaft::st {
 
@@ -154,6 +156,10 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
     const Token& at = declared.at;
     if (at.word != Word::direct || !variable.type) return;
     variable.used = true;
+    if (is_s5_number(variable.type)) {
+        if (!locate_s5(c, variable, at)) variable.type = nullptr;
+        return;
+    }
     if (at.text.ends_with('*')) {
         const char area = at.text.size() > 2 ? upper(at.text[1]) : ' ';
         if (area == 'I') variable.pin = Section::input;

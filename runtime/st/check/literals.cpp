@@ -8,6 +8,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/types/s5.hpp"
 #include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
@@ -48,6 +49,17 @@ const Type* check_dtl(Checking& c, Expression*& e) {
     return check(c, e);
 }
 
+const Type* check_s5time(Checking& c, Expression& e) {
+    const auto duration = read_duration(e.token.text);
+    const auto word = duration ? s5time_of(*duration) : std::nullopt;
+    if (!word)
+        return c.fail(code::value_out_of_range, e.place,
+                      fmt::format("'{}' is not an S5TIME", e.place.text()),
+                      "write S5T#10ms to S5T#2h46m30s");
+    e.constant.integer = *word;
+    return &s5time_type;
+}
+
 const Type* check_time(Checking& c, Expression*& slot) {
     Expression& e = *slot;
     const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
@@ -62,6 +74,8 @@ const Type* check_time(Checking& c, Expression*& slot) {
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
     const Dialect& dialect = e.place.dialect();
+    if (dialect.vendor == Vendor::siemens && lower(prefix).starts_with("s5"))
+        return check_s5time(c, e);
     const bool is_long = same_name(prefix.substr(0, 1), "l"),
                has_no_sign = dialect.is_loose && is_long;
     const auto value = read_duration(e.token.text, has_no_sign);
@@ -126,6 +140,19 @@ const Type* check_literal(Checking& c, Expression*& e) {
     }
 }
 
+/// `C#25`, which is 16#25.
+static const Type* check_count(Checking& c, Expression*& e) {
+    Expression*& value = e->operands[0];
+    if (!check(c, value)) return nullptr;
+    const auto digits = is_constant(*value) && value->type->is_integer()
+                            ? three_digits(value->constant.integer)
+                            : std::nullopt;
+    if (!digits)
+        return c.fail(code::value_out_of_range, e->place,
+                      fmt::format("'{}' is no count", e->place.text()), "write C#0 to C#999");
+    return become(c, e, bits_type(16), {.integer = *digits});
+}
+
 const Type* check_typed(Checking& c, Expression*& e) {
     Expression*& value = e->operands[0];
     const Token& name = e->token;
@@ -135,6 +162,8 @@ const Type* check_typed(Checking& c, Expression*& e) {
         if (!type) return nullptr;
         c.note(name.place, *named);
     }
+    if (!type && same_name(name.text, "c") && name.place.dialect().vendor == Vendor::siemens)
+        return check_count(c, e);
     if (!type && resolve_name(c, name))
         return c.fail(code::not_declared, name.place,
                       fmt::format("'{}' is not a type of values", name.text),

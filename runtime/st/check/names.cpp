@@ -8,9 +8,11 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/s5.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/types/s5.hpp"
 
 namespace lineshaft::st {
 
@@ -311,7 +313,10 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return check(c, e, expected);
     }
     if (variable && is_ambiguous(c, token, *variable)) return nullptr;
-    if (variable) return variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
+    if (variable) {
+        const Type* type = variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
+        return is_s5_number(type) ? signal_of_s5(c, e, *type, expected) : type;
+    }
     if (is_own_instance(c, *e)) return check_own_instance(c, e);
     if (getter) return check_getter(c, e, *getter);
     if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
@@ -339,6 +344,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return check_direct(c, *e);
     }
     if (const Type* own = own_enumeration_with(c, token)) return check_value(c, e, *own, token);
+    if (const auto type = check_s5_name(c, e, expected)) return *type;
     return unknown_name(c, *e);
 }
 

@@ -76,13 +76,15 @@ const Expression* root_of(Checking& c, const Expression& member) {
     return is_free ? root : nullptr;
 }
 
-/// Sources in SCL use it without saying so.
-void open_siemens_motion(Checking& c) {
+/// Sources in SCL use them without saying so.
+void open_siemens(Checking& c) {
     static const Scope whole_source = {.end = std::numeric_limits<std::uint32_t>::max()};
-    if (!is_namespace(c, siemens_motion)) return;
+    Prefixes opened{&whole_source};
+    for (const std::string_view library : {siemens_motion, siemens_step7})
+        if (is_namespace(c, library)) opened.paths.push_back(library);
+    if (opened.paths.empty()) return;
     for (const auto& source : c.tree.sources)
-        if (&source->dialect == &scl)
-            c.prefixes[source.get()].push_back({&whole_source, {siemens_motion}});
+        if (&source->dialect == &scl) c.prefixes[source.get()].push_back(opened);
 }
 
 }  // namespace
@@ -120,15 +122,16 @@ void collect_namespaces(Checking& c) {
                      p = before_last_point(p))
                     made.paths.push_back(p);
                 for (const Token& used : s->usings) {
-                    if (is_namespace(c, used.text) || is_namespace_of_assertions(used.text))
-                        made.paths.push_back(used.text);
+                    const std::string_view path = library_called(used.text);
+                    if (is_namespace(c, path) || is_namespace_of_assertions(path))
+                        made.paths.push_back(path);
                     else
                         c.unknown_usings.push_back(used), made.is_whole = false;
                 }
             }
         }
     }
-    open_siemens_motion(c);
+    open_siemens(c);
 }
 
 Token name_with_namespace(Checking& c, Token declared) {

@@ -67,6 +67,12 @@ Expression* make_name(Checking& c, const Expression& like, std::string_view text
     return keep(c, {.kind = E::name, .token = with_text(like.token, text), .place = like.place});
 }
 
+Expression* make_function_name(Checking& c, const Expression& like, std::string_view text) {
+    Expression* made = make_name(c, like, text);
+    made->token.local = made->token.quoted = false;
+    return made;
+}
+
 Expression* make_member(Checking& c, Expression* of, std::string_view text) {
     return keep(c, {.kind = E::member,
                     .token = with_text(of->token, text),

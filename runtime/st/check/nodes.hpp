@@ -29,6 +29,8 @@ Expression* make_text(Checking& c, const Expression& quoted);
 Expression* make_use(Checking& c, const Expression& like, Variable& variable);
 /// `text`, where `like` stands.
 Expression* make_name(Checking& c, const Expression& like, std::string_view text);
+/// That of a function, where `like` stands, which may be `#x` or `"x"`.
+Expression* make_function_name(Checking& c, const Expression& like, std::string_view text);
 /// `of.text`
 Expression* make_member(Checking& c, Expression* of, std::string_view text);
 /// `of[index]`

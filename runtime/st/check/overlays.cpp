@@ -36,7 +36,10 @@ bool fits(Checking& c, const Variable& overlay, const Variable& seen, const Toke
                                   describe(*variable->type)),
                       "numbers, times, texts, and structures and arrays of such are");
     }
-    const std::uint64_t bits = packed_bits(*overlay.type, dialect),
+    const bool are_flags = overlay.type->kind == Kind::array && !overlay.type->has_inner &&
+                           overlay.type->element->kind == Kind::boolean;
+    const std::uint64_t bits =
+                            are_flags ? overlay.type->count() : packed_bits(*overlay.type, dialect),
                         room = packed_bits(*seen.type, dialect);
     if (bits <= room) return true;
     return c.fail(code::value_out_of_range, at.place,

@@ -67,8 +67,12 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         if (!parameter || !parameter->type) return {};
         if (!argument.value->type) continue;
         const auto one = closeness(*parameter, *argument.value->type);
-        if (!one) return {};
-        sum += *one;
+        const bool converts = call.place.dialect().vendor == Vendor::siemens &&
+                              parameter->section == Section::input &&
+                              parameter->type->kind == Kind::integer &&
+                              argument.value->type->kind == Kind::integer;
+        if (!one && !converts) return {};
+        sum += one.value_or(0);
     }
     const auto missing =
         static_cast<int>(parameters.size()) - static_cast<int>(call.arguments.size());

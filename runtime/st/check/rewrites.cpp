@@ -109,6 +109,7 @@ void check_timer(Checking& c, Expression*& timer, std::string_view function) {
 void check_special(Checking& c, Statement*& s) {
     const StandardFunction& f = *s->value->standard;
     if (f.name == "DEMUX") return rewrite_demux(c, s);
+    if (f.name == "SCATTER_BLK" || f.name == "GATHER_BLK") return rewrite_bit_block(c, s);
     if (!check_count(c, *s->value, f) || !order_arguments(c, s->value, f)) return;
     Expression& call = *s->value;
     call.type = &bool_type;  // which nothing takes
@@ -161,7 +162,7 @@ bool rewrite(Checking& c, Statement*& s) {
         const bool is_siemens = s->place.dialect().vendor == Vendor::siemens;
         if (is_siemens && !routine && callee.kind == E::name &&
             same_name(callee.token.text, "MOVE_BLK_VARIANT"))
-            return rewrite_variant_move(c, s);
+            return rewrite_variant_move(c, s), true;
         return is_siemens && routine && rewrite_bytes(c, s, *routine);
     }
     s = if_enabled(c, *s, routine != nullptr);

@@ -13,6 +13,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/s5.hpp"
 #include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
@@ -418,7 +419,7 @@ void check(Checking& c, Statement*& slot) {
 
 void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
-    if (rewrite_property(c, s)) return;
+    if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     const Type* type = check(c, s->target);
     if (s->op != Word::assign && type)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "runtime/st/check/checking.hpp"
 
 namespace lineshaft::st {
@@ -35,14 +37,49 @@ const Type* use_edge(Checking& c, Expression*& e, Variable& input);
 
 // block_moves.cpp
 
+/// A LINT of the routine at hand that nobody can name.
+Variable& counter(Checking& c, std::string_view name);
+
+/// The least and the greatest index of an array of one dimension, also of an ARRAY[*]. Empty of
+/// anything else.
+struct Bounds {
+    Expression *lower = nullptr, *upper = nullptr;
+};
+std::optional<Bounds> bounds_of_array(Checking& c, Expression* array);
+
+/// How many elements there are from that one on, which is not checked yet; null: it is none of an
+/// array of one dimension.
+Expression* elements_from(Checking& c, const Expression& element);
+
+/// Whether MOVE_BLK and its like stay within the arrays that they are given, which are not checked
+/// yet; null: that is not known.
+Expression* stays_within(Checking& c, const Expression& like, std::string_view function,
+                         Expression* in, Expression* count, Expression* out);
+
 /// MOVE_BLK, UMOVE_BLK, FILL_BLK and UFILL_BLK of Siemens as what they do with the elements of two
-/// arrays, or to fill with the members of a structure; beyond an array is a fault. Its arguments
-/// are in their order.
+/// arrays, or to fill with the members of a structure. Where there are fewer elements than that
+/// they do nothing. Its arguments are in their order.
 void rewrite_block_move(Checking& c, Statement*& s);
 
-/// MOVE_BLK_VARIANT as MOVE_BLK between elements of two arrays; it gives 0. False: it is another
-/// call.
-bool rewrite_variant_move(Checking& c, Statement*& s);
+// variant_moves.cpp
+
+/// What is given by that name; null: nothing.
+Expression* argument_of(const Expression& call, std::string_view name);
+/// MOVE_BLK_VARIANT as MOVE_BLK between elements of two arrays, where these have so many; what it
+/// gives is 0 or says why nothing is moved.
+void rewrite_variant_move(Checking& c, Statement*& s);
+/// Whether it moves anything, behind what is added to `before`; null: something is wrong with it.
+Expression* moves_variant(Checking& c, const Expression& call, Block& before);
+
+// bit_blocks.cpp
+
+/// SCATTER_BLK and GATHER_BLK of Siemens as an assignment for each bit of a word, in a loop.
+void rewrite_bit_block(Checking& c, Statement*& s);
+/// Whether it has all that it is asked for.
+Expression* has_bit_block(Checking& c, const Expression& call);
+
+// block_moves.cpp
+
 /// DEMUX as an IF for each of its outputs.
 void rewrite_demux(Checking& c, Statement*& s);
 

@@ -9,6 +9,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
+#include "runtime/st/types/s5.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -258,6 +259,22 @@ const Type* in_dialect(const Type* type, const Place& place) {
     return type == &wide_string_type ? &string_type : type == &wide_char_type ? &char_type : type;
 }
 
+/// A DATE and a DT of a Siemens controller begin with 1990-01-01.
+static const Type* begun_in_dialect(const Type* type, const Place& place) {
+    const bool is_siemens =
+        place.dialect().vendor == Vendor::siemens && !place.source->is_prelude();
+    const bool is_begun =
+        (type->kind == Kind::date || type->kind == Kind::moment) && !type->counts_ns;
+    if (!is_siemens || !is_begun) return in_dialect(type, place);
+    static const auto begun = [](const Type& of) {
+        Type made = of;
+        made.initial.integer = 7305 * Wide{86'400'000'000'000};
+        return made;
+    };
+    static const Type date = begun(date_type), moment = begun(moment_type);
+    return type->kind == Kind::date ? &date : &moment;
+}
+
 const Type* resolve_parameter(Checking& c, const TypeText& text) {
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
@@ -267,9 +284,12 @@ const Type* resolve_name(Checking& c, const Token& name) {
     if (const Type* type = find_elementary(name.text); type && !name.quoted)
         return type == &string_type        ? &unsized_string(name.place.dialect())
                : type == &wide_string_type ? &unsized_wide_string(name.place)
-                                           : in_dialect(type, name.place);
+                                           : begun_in_dialect(type, name.place);
     if (name.place.dialect().is_loose && !name.quoted)
         if (const Type* type = find_codesys_type(name.text)) return type;
+    const bool has_s5 = name.place.dialect().vendor == Vendor::siemens || is_library(name);
+    if (has_s5 && !name.quoted && !c.look_up(&Names::types, name) && !c.find_routine(name))
+        if (const Type* type = find_s5_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {
         const Type* type = resolve_declared(c, *named);
         c.note(name.place, *named);

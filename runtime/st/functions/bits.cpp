@@ -43,6 +43,12 @@ constexpr StandardFunction bit_strings[] = {
      Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.value(0)); }},
     {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
      Typing::statement, nullptr},
+    {"SCATTER_BLK(IN: ANY_BIT; COUNT_IN: ANY_INT; OUT: BOOL)",
+     "writes the bits of COUNT_IN elements from IN on to elements of an array of BOOL from OUT on, which begin where such a bit string may",
+     Typing::statement, nullptr},
+    {"GATHER_BLK(IN: BOOL; COUNT_OUT: ANY_INT; OUT: ANY_BIT)",
+     "writes elements of an array of BOOL from IN on, which begin where such a bit string may, to the bits of COUNT_OUT elements from OUT on",
+     Typing::statement, nullptr},
     {"GATHER(IN: ARRAY; OUT: ANY_BIT)", "writes each element of IN, an array of BOOL, to a bit of OUT",
      Typing::statement, nullptr},
 };

@@ -73,8 +73,13 @@ class FieldWriter {
         reference.required = true;
     }
 
-    /// Of a data block, whose variables are all its own.
+    /// Of a data block, whose variables are all its own. What a library keeps many of is nobody
+    /// else's.
     void write_member(const Variable& member) {
+        const bool are_librarys =
+            member.name.place.source && member.name.place.source->is_library() &&
+            member.type->kind == Kind::array && member.type->element->kind == Kind::structure;
+        if (are_librarys && !has_handle(*member.type)) return;
         write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
               pin_of(member, Direction::local), member);
     }

@@ -84,7 +84,8 @@ LibraryNames::Index make_index(const Catalog& catalog) {
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
-            if (file.library == siemens_motion) index.of_siemens.emplace(name, &file);
+            if (file.library == siemens_motion || file.library == siemens_step7)
+                index.of_siemens.emplace(name, &file);
             if (is_open(file) && !is_everyday(name)) index.by_name[name].push_back(&file);
         }
     }
@@ -228,7 +229,8 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
     std::string path(tokens.tokens[at].text);
     for (;;) {
         const bool goes_on = tokens.tokens[at + 1].word == Word::dot;
-        if (const auto it = index_.libraries.find(path); it != index_.libraries.end()) {
+        const std::string_view library = library_called(path);
+        if (const auto it = index_.libraries.find(library); it != index_.libraries.end()) {
             if (is_used || (goes_on && !is_open(*it->second.front()))) said_.insert(it->first);
         }
         if (!goes_on || tokens.tokens[at + 2].word == Word::end_of_file) return;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "runtime/source/letters.hpp"
+#include "runtime/st/types/s5.hpp"
+
 namespace lineshaft::st {
 
 namespace {
@@ -41,7 +44,7 @@ const NameSet& types() {
 /// A function is called; a type is named.
 bool is_of_prelude(const Token& token, const Token& behind) {
     const bool is_name = token.word == Word::name || token.word == Word::prefix;
-    return is_name && (types().contains(token.text) ||
+    return is_name && (types().contains(token.text) || same_name(token.text, s5time_type.name) ||
                        (behind.word == Word::open && functions().contains(token.text)));
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cstring>
+#include <iterator>
 
 namespace lineshaft::st {
 
@@ -39,7 +41,7 @@ std::optional<PackedFormat> of_time(const Type& type, const Dialect& dialect) {
     PackedFormat made{.coding = Coding::clock, .bytes = 4, .is_big = is_s7, .scale = in_ms};
     if (is_long) return PackedFormat{Coding::clock, 8, is_s7, in_ns};
     if (type.kind == Kind::date && is_s7) return PackedFormat{Coding::dated, 2, true, in_days};
-    if (type.kind == Kind::moment && is_s7) return {};  // a digit in each four bits
+    if (type.kind == Kind::moment && is_s7) return PackedFormat{Coding::digits, 8, true, 0};
     if (type.kind == Kind::date || type.kind == Kind::moment) made.scale = in_seconds;
     return made;
 }
@@ -55,6 +57,55 @@ std::uint64_t raw_bytes(const std::byte* bytes, const PackedFormat& format) {
 std::int64_t signed_value(std::uint64_t raw, const PackedFormat& format) {
     const int unused = 64 - 8 * format.bytes;
     return static_cast<std::int64_t>(raw << unused) >> unused;
+}
+
+/// Year, month, day, hour, minute, second, ms and the day of the week, from Sunday on.
+constexpr int digits_of[] = {2, 2, 2, 2, 2, 2, 3, 1};
+
+/// ns since 1970. What is no digit counts as it is.
+std::int64_t moment_of_digits(std::uint64_t raw) {
+    std::int64_t parts[8] = {};
+    int at = 16;
+    for (std::size_t i = 0; i < std::size(parts); ++i)
+        for (int digit = 0; digit < digits_of[i]; ++digit)
+            parts[i] = parts[i] * 10 + static_cast<std::int64_t>(raw >> (4 * --at) & 0xF);
+    using namespace std::chrono;
+    const year_month month{
+        year(static_cast<int>(parts[0] + (parts[0] < 90 ? 2000 : 1900))),
+        std::chrono::month(static_cast<unsigned>(std::clamp<std::int64_t>(parts[1], 1, 12)))};
+    const auto days = sys_days(month / 1).time_since_epoch().count() + parts[2] - 1;
+    const auto seconds = ((days * 24 + parts[3]) * 60 + parts[4]) * 60 + parts[5];
+    return (seconds * 1000 + parts[6]) * 1'000'000;
+}
+
+/// What is before 1990 is the first moment of it, what is behind 2089 the last.
+std::uint64_t digits_of_moment(std::int64_t nanoseconds) {
+    using namespace std::chrono;
+    constexpr std::int64_t ms = 1'000'000, day = 86'400'000;
+    const auto day_of = [](int of_year) {
+        return std::int64_t{sys_days(year(of_year) / 1 / 1).time_since_epoch().count()};
+    };
+    const std::int64_t all =
+        std::clamp(nanoseconds / ms, day_of(1990) * day, day_of(2090) * day - 1);
+    const sys_days date{days(all / day)};
+    const year_month_day civil(date);
+    const std::int64_t clock = all % day;
+    const std::int64_t parts[] = {static_cast<int>(civil.year()) % 100,
+                                  static_cast<unsigned>(civil.month()),
+                                  static_cast<unsigned>(civil.day()),
+                                  clock / 3'600'000,
+                                  clock / 60'000 % 60,
+                                  clock / 1000 % 60,
+                                  clock % 1000,
+                                  weekday(date).c_encoding() + 1};
+    std::uint64_t made = 0;
+    for (std::size_t i = 0; i < std::size(parts); ++i) {
+        std::int64_t unit = 1;
+        for (int digit = 1; digit < digits_of[i]; ++digit) unit *= 10;
+        for (; unit > 0; unit /= 10)
+            made = made << 4 | static_cast<std::uint64_t>(parts[i] / unit % 10);
+    }
+    return made;
 }
 
 std::int64_t quotient_down(std::int64_t value, std::int64_t by) {
@@ -169,6 +220,8 @@ std::uint64_t load_packed(const std::byte* bytes, std::uint64_t bit, PackedForma
                    static_cast<std::uint64_t>(scales[format.scale]);
         case Coding::dated:
             return (raw + day_of_1990) * static_cast<std::uint64_t>(scales[in_days]);
+        case Coding::digits:
+            return static_cast<std::uint64_t>(moment_of_digits(raw));
     }
     return raw;
 }
@@ -187,6 +240,7 @@ void store_packed(std::byte* bytes, std::uint64_t bit, PackedFormat format, std:
         value = static_cast<std::uint64_t>(quotient_down(number, scales[format.scale]));
     if (format.coding == Coding::dated)
         value = static_cast<std::uint64_t>(quotient_down(number, scales[in_days]) - day_of_1990);
+    if (format.coding == Coding::digits) value = digits_of_moment(number);
     for (std::size_t i = 0; i < format.bytes; ++i, value >>= 8)
         bytes[format.is_big ? format.bytes - 1 - i : i] = static_cast<std::byte>(value);
 }

@@ -15,8 +15,9 @@ struct PackedFormat {
         whole,
         with_sign,
         real,
-        clock,  ///< ns of a slot as `scale` ns a unit; s from 1970 to 2106, without a sign
-        dated,  ///< likewise, from 1990-01-01 on
+        clock,   ///< ns of a slot as `scale` ns a unit; s from 1970 to 2106, without a sign
+        dated,   ///< likewise, from 1990-01-01 on
+        digits,  ///< a moment of 1990 to 2089 as an S7 has it: a digit in each four bits
     };
     Coding coding = Coding::whole;
     std::uint8_t bytes = 1;  ///< 1, 2, 4, 8

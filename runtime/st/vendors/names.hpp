@@ -35,6 +35,14 @@ bool is_open(const LibraryFile& file);
 /// Whose names sources in SCL have without it, as they have the instructions of STEP 7.
 inline constexpr std::string_view siemens_motion = "Siemens.Simatic.S71500.MotionControl.Native";
 
+/// What a library is called here: newer editions of SIMATIC AX name its motion without a controller.
+constexpr std::string_view library_called(std::string_view name) {
+    return name == "Siemens.Simatic.MotionControl.Native" ? siemens_motion : name;
+}
+
+/// Timers and counters of their controllers themselves; names of it are seen as those.
+inline constexpr std::string_view siemens_step7 = "Siemens.Step7";
+
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
 
