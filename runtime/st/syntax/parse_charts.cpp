@@ -24,6 +24,7 @@ void end_part(Parsing& p, std::string_view end, const Token& opener) {
 
 /// Action_Association : Name '(' ( Name ( ',' Expression ) ? ) ? ')'
 /// The second Name is a qualifier: N, S, R, P, P0, P1, or with a time L, D, SD, DS, SL.
+/// CODESYS keeps actions at the step: _ENTRY, _ACTIVE and _EXIT of it.
 ChartAssociation parse_association(Parsing& p) {
     ChartAssociation made;
     made.action = expect_name(p, "the name of an action");

@@ -303,7 +303,7 @@ TEST_CASE("what CODESYS keeps at a step are its actions") {
             element("jumpStep", 3, 3, in(from(2)), "targetName=\"Begin\""),
         "<actions>" + action("Enter") + action("Work") + "</actions>"));
     CHECK(made.messages == "");
-    CHECK(made.text.find("INITIAL_STEP Begin:\n    Enter(P1);\n    Work(N);\nEND_STEP") !=
+    CHECK(made.text.find("INITIAL_STEP Begin:\n    Enter(_ENTRY);\n    Work(_ACTIVE);\nEND_STEP") !=
           std::string::npos);
 }
 
