@@ -199,6 +199,147 @@ def check_configuration():
     assert (work / "placed.csv").read_text().splitlines()[1].startswith("0,0,1,7,"), "lamp is no bit of speed"
 
 
+def check_exported_tasks():
+    """CoDeSys 2.3 exports its tasks, and names of inputs and outputs, beside its programs; without tasks it runs PLC_PRG."""
+    programs = "".join(f"PROGRAM {name}\nVAR n : INT; END_VAR\nn := n + 1; {more}\nEND_PROGRAM\n" for name, more in
+                       (("PLC_PRG", "Helper(); lamp := start; speed := level;"), ("Helper", ""), ("Fast", ""), ("Late", "")))
+    write("exported/PRG.EXP", programs + "VAR_GLOBAL\n  go : BOOL;\nEND_VAR\n")
+    write("exported/IO.EXP", """PLC_CONFIGURATION
+_GLOBAL
+_VERSION: 3
+_END_GLOBAL
+_MODULE: '3S'
+_SECTION_NAME: 'Root'
+_CHANNEL
+_SECTION_NAME: 'ByteInput'
+_SYMBOLIC_NAME: ''
+_CHANNEL_MODE: 'I'
+_IECADR: %IB0.0
+_BIT 0: %IX0.0.0 'start' 'begins'
+_BIT 1: %IX0.0.1 '' 'Bit 1'
+_END_CHANNEL
+_CHANNEL
+_SECTION_NAME: 'FloatInput'
+_SYMBOLIC_NAME: 'level'
+_CHANNEL_MODE: 'I'
+_IECADR: %ID9.1.0
+_END_CHANNEL
+_CHANNEL
+_SECTION_NAME: 'FloatOutput'
+_SYMBOLIC_NAME: 'speed'
+_IECADR: %QD9.265.0
+_END_CHANNEL
+_CHANNEL
+_SECTION_NAME: 'BitOutput'
+_SYMBOLIC_NAME: 'lamp'
+_IECADR: %QX2.3
+_END_CHANNEL
+_END_MODULE
+PLC_END
+MACRO
+MacroName: 'export'
+MacroCmd: 'project expmul'
+END_MACRO
+""")
+    run("new", "untasked", "--from", "exported")
+    text = (work / "untasked.yaml").read_text()
+    assert "PLC_PRG: {type: PLC_PRG, task: main}" in text and "{type: Fast" not in text, text
+    assert "IX0_0: false  # start" in text, text
+    run("run", "--quiet", "untasked.yaml")
+    write("exported/TASKS.EXP", """RESOURCE
+
+TASK free (PRIORITY := 1);
+PLC_PRG();
+{Additional_info : 2,0,0,0,1,4294967295}
+END_TASK
+
+TASK quick (PRIORITY := 0, INTERVAL := T#200ms);
+Fast();
+END_TASK
+
+TASK late (PRIORITY := 3, EVENT := go);
+Late();
+END_TASK
+{event_task : 'start','Called when program starts','','FUNCTION systemevent: DWORD'}{event_task_info : 0,1,27841}
+
+END_RESOURCE
+""")
+    run("new", "tasked", "--from", "exported")
+    text = (work / "tasked.yaml").read_text()
+    for line in ("free: {every: 10 ms, priority: 1}  # it runs freely there, without an interval", "quick: {every: 200 ms, priority: 2}",
+                 "# 'late' runs Late at the event 'go': give it a task such as x: {on: a.signal}", "Fast: {type: Fast, task: quick}",
+                 "PLC_PRG: {type: PLC_PRG, task: free}"):
+        assert line in text, text
+    assert "{type: Late" not in text and "{type: Helper" not in text, text
+    run("run", "--quiet", "tasked.yaml")
+
+
+def check_tasks_of_codesys():
+    """A task of CODESYS 3 is cyclic, free or of an event, whatever its interval says."""
+    pous = "".join(f'<pou name="{name}" pouType="program"><interface><localVars><variable name="n"><type><INT/></type></variable>'
+                   f'</localVars></interface>{st("n := n + 1;")}</pou>' for name in ("Free", "Late"))
+    tasks = "".join(f'<task name="{name}" interval="PT0.02S" priority="{priority}"><pouInstance name="{name}" typeName=""/>'
+                    + addition("tasksettings", f"<TaskSettings {settings}/>") + "</task>" for name, priority, settings in
+                    (("Free", 2, 'KindOfTask="Freewheeling"'), ("Late", 1, 'KindOfTask="Event" Event="GVL.go"')))
+    write("settings.xml", f'<project xmlns="http://www.plcopen.org/xml/tc6_0200"><types><pous>{pous}</pous></types><instances>'
+          f'<configurations><configuration name="c"><resource name="r">{tasks}</resource></configuration></configurations></instances>'
+          "</project>")
+    run("new", "settings", "--from", "settings.xml")
+    text = (work / "settings.yaml").read_text()
+    for line in ("Free: {every: 10 ms, priority: 1}  # it runs freely there", "# 'Late' runs Late at the event 'GVL.go'"):
+        assert line in text, text
+    assert "{type: Late" not in text, text
+
+
+def exported(name, number, owner, declaration, body=None, excluded="False"):
+    """An object as CODESYS 3 has it in `.export`."""
+    def lines(text):
+        return "".join(f'<Single Type="{{a5}}"><Single Name="Id" Type="long">1</Single><Null Name="Tag" />'
+                       f'<Single Name="Text" Type="string">{line}</Single></Single>' for line in text.split("\n"))
+
+    def document(part, text):
+        return (f'<Single Name="{part}" Type="{{b}}"><Single Name="TextDocument" Type="{{f3}}"><Array Name="TextLines" Type="{{a5}}">'
+                f'{lines(text)}</Array></Single></Single>')
+    return (f'<Single Type="{{61}}"><Single Name="IsRoot" Type="bool">True</Single><Single Name="MetaObject" Type="{{81}}">'
+            f'<Single Name="Guid" Type="System.Guid">{number}</Single><Single Name="ParentGuid" Type="System.Guid">{owner}</Single>'
+            f'<Single Name="Name" Type="string">{name}</Single><Dictionary Type="{{2c}}" Name="Properties"><Entry><Key/><Value>'
+            f'<Single Type="{{24}}"><Single Name="ExcludeFromBuild" Type="bool">{excluded}</Single></Single></Value></Entry></Dictionary>'
+            f'</Single><Single Name="Object" Type="{{6f}}">{"" if body is None else document("Implementation", body)}'
+            f'{document("Interface", declaration) if declaration else ""}</Single></Single>')
+
+
+def check_codesys_export():
+    """`.export` of CODESYS 3: lines of texts, and methods, properties and actions as objects of their own."""
+    objects = (exported("Belt", 1, 0, "FUNCTION_BLOCK Belt\nVAR\n  n : INT;\nEND_VAR", "IF n &lt; 100 THEN\n  n := n + Step(2);\nEND_IF\nDouble();")
+               + exported("Step", 2, 1, "METHOD PUBLIC Step : INT\nVAR_INPUT\n  more : INT;\nEND_VAR", "Step := more;")
+               + exported("Double", 3, 1, "", "n := n * 2;")
+               + exported("Count", 4, 1, "PROPERTY Count : INT") + exported("Get", 5, 4, "VAR\nEND_VAR", "Count := n;")
+               + exported("Kind", 6, 0, "TYPE Kind : (idle, busy); END_TYPE") + exported("GVL", 7, 0, "VAR_GLOBAL\n  kind : Kind;\nEND_VAR")
+               + exported("Old", 8, 0, "PROGRAM Old\nVAR\nEND_VAR", "nonsense", "True")
+               + exported("PLC_PRG", 9, 0, "PROGRAM PLC_PRG\nVAR\n  belt : Belt;\n  n : INT;\nEND_VAR", "belt();\nn := belt.Count;\nGVL.kind := busy;"))
+    path = "exported3/line.export"
+    write(path, '<ExportFile>\n<StructuredView Guid="{21}">\n<Single xml:space="preserve" Type="{3d}"><Array Name="Profile" Type="byte">AA==</Array>'
+          f'<List Name="Entries">{objects}</List></Single></StructuredView></ExportFile>')
+    write("exported3/other.export", "PATH=/bin")
+    run("new", "line", "--from", "exported3")
+    assert "PLC_PRG: {type: PLC_PRG, task: main}" in (work / "line.yaml").read_text()
+    run("run", "--quiet", "line.yaml", "--trace", "line.csv")
+    header, *rows = (work / "line.csv").read_text().splitlines()
+    at = header.split(",").index("PLC_PRG.n")
+    assert [row.split(",")[at] for row in rows[:3]] == ["4", "12", "28"], (header, rows[:3])
+    write(path, (work / path).read_text().replace("belt();", "belt(]);"))
+    told = run("check", path, code=2)
+    assert "line.export:3:" in told, told
+
+
+def check_unread_bodies():
+    """A TEST that needs a body which is not read does not pass."""
+    write("unread/p.xml", drawn("<p/>", "LISP").replace('pouType="program"', 'pouType="functionBlock"'))
+    write("unread/p_test.st", "SETUP\nVAR p : P; END_VAR\nEND_SETUP\nTEST 'does nothing'\np();\nASSERT_EQ(1, 1);\nEND_TEST\n")
+    told = run("test", "unread", code=1)
+    assert "the body of 'P' is drawn (LISP), which is not read" in told, told
+
+
 CHART = """PROGRAM PLC_PRG
 VAR_INPUT reset, init : BOOL; END_VAR
 VAR machine : Machine; END_VAR
@@ -1110,6 +1251,10 @@ with tempfile.TemporaryDirectory() as temporary:
     check_inherited()
     check_page()
     check_configuration()
+    check_exported_tasks()
+    check_tasks_of_codesys()
+    check_codesys_export()
+    check_unread_bodies()
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()

@@ -10,8 +10,8 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::string_view area_letters = "IQM", size_letters = "XBWDL";
-constexpr std::uint8_t sizes[] = {1, 8, 16, 32, 64};
+constexpr std::string_view area_letters = "IQM", size_letters = "XBWDLR";
+constexpr std::uint8_t sizes[] = {1, 8, 16, 32, 64, 32};
 
 /// The number at the beginning, which is taken off; empty for none, or one that is too long.
 std::optional<std::uint32_t> take_number(std::string_view& text) {

@@ -119,6 +119,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
 void ProgramReader::settle_dialect() {
     const auto names = st::dialect_names();
     const auto chosen = std::ranges::find(names, program_.dialect, &st::DialectName::name);
+    projects::leave_out_repeated_exports(program_.texts);
     if (chosen == names.end()) projects::read_as_neighbours(program_.texts);
     projects::read_plain_text_as(chosen == names.end() ? ".st" : chosen->ending, program_.texts);
 }
@@ -369,6 +370,7 @@ projects::Project read_project(const std::string& path,
         };
         projects::read_sources({project, out, resolve}, file);
     }
+    projects::leave_out_repeated_exports(project.sources);
     projects::read_as_neighbours(project.sources);
     return project;
 }

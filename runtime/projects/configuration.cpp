@@ -29,6 +29,8 @@ ProjectTask read_task(st::Cursor& p) {
         while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
         const std::string_view value = begin.to(p.last().place).text();
         if (st::same_name(key.text, "interval")) made.every = interval_of(value);
+        if (st::same_name(key.text, "single") || st::same_name(key.text, "event"))
+            made.event = value;
         if (st::same_name(key.text, "priority"))
             std::from_chars(value.data(), value.data() + value.size(), made.priority);
     }
@@ -68,7 +70,58 @@ void read_program(st::Cursor& p, std::vector<ProjectTask>& tasks) {
     read_arguments(p, program);
 }
 
+/// `PLC_PRG();` and its like, up to END_TASK.
+void read_calls(st::Cursor& p, ProjectTask& task) {
+    p.accept(Word::close);
+    p.accept(Word::semicolon);
+    while (!p.says("end_task") && !p.is(Word::end_of_file)) {
+        if (p.is_name()) task.programs.push_back({name_of(p.here())});
+        while (!p.says("end_task") && !p.is(Word::end_of_file) && !p.accept(Word::semicolon))
+            p.take();
+    }
+}
+
+constexpr std::string_view resource_end = "END_RESOURCE";
+
+/// What stands between RESOURCE and END_RESOURCE, at its places; all else is blank.
+std::string resources_of(const std::string& text) {
+    std::string made(text.size(), ' ');
+    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
+        made[at] = '\n';
+    constexpr std::string_view word = "RESOURCE";
+    for (std::size_t end = text.find(resource_end), from = 0; end != text.npos;
+         from = end + resource_end.size(), end = text.find(resource_end, from)) {
+        const std::size_t begin = text.rfind(word, end - 1);
+        if (begin == text.npos || begin < from) continue;
+        const std::size_t first = begin + word.size();
+        made.replace(first, end - first, text, first, end - first);
+    }
+    return made;
+}
+
 }  // namespace
+
+void read_tasks_of_export(const Reading& to, const SourceFile& source) {
+    if (source.text.find(resource_end) == std::string::npos) return;
+    SourceFile made = source;
+    made.text = resources_of(source.text);
+    Diagnostics unread;
+    st::Cursor p{st::read_tokens(std::make_shared<const SourceFile>(std::move(made)), unread)};
+    while (!p.is(Word::end_of_file)) {
+        if (!p.says("task") || !p.is_name(1)) {
+            p.take();
+            continue;
+        }
+        ProjectTask task = read_task(p);
+        task.is_free = task.every == 0 && task.event.empty();
+        read_calls(p, task);
+        const auto is_known = [&](const ProjectTask& other) {
+            return st::same_name(other.name.text, task.name.text);
+        };
+        if (std::ranges::none_of(to.project.tasks, is_known))
+            to.project.tasks.push_back(std::move(task));
+    }
+}
 
 std::int64_t interval_of(std::string_view text) {
     struct Unit {

@@ -15,4 +15,8 @@ std::int64_t interval_of(std::string_view text);
 /// The tasks of each CONFIGURATION in a file of Structured Text, with their programs.
 void read_configuration(const Reading& to, const std::shared_ptr<const SourceFile>& source);
 
+/// The tasks that CoDeSys 2.3 exports between RESOURCE and END_RESOURCE, which is no source. One
+/// without INTERVAL and EVENT is free.
+void read_tasks_of_export(const Reading& to, const SourceFile& source);
+
 }  // namespace lineshaft::projects

@@ -1,6 +1,8 @@
 #include "runtime/projects/plain_text.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 #include "runtime/source/letters.hpp"
@@ -22,6 +24,12 @@ std::shared_ptr<const SourceFile> read_as(const SourceFile& source, std::string_
     return std::make_shared<const SourceFile>(std::move(made));
 }
 
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r\n");
+    if (begin == text.npos) return {};
+    return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+}
+
 }  // namespace
 
 void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources) {
@@ -38,6 +46,31 @@ void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources)
         const auto folder = folders.find(fs::path(source->path).parent_path());
         if (folder != folders.end() && is_plain(*source)) source = read_as(*source, folder->second);
     }
+}
+
+void leave_out_repeated_exports(std::vector<std::shared_ptr<const SourceFile>>& sources) {
+    constexpr std::size_t most_bytes = 1 << 30;  // that are compared
+    std::vector<std::pair<std::string_view, std::size_t>> exports;
+    for (std::size_t i = 0; i < sources.size(); ++i)
+        if (lower(fs::path(sources[i]->path).extension().string()) == ".exp")
+            exports.emplace_back(trimmed(sources[i]->text), i);
+    std::ranges::stable_sort(exports, std::greater<>(),
+                             [](const auto& e) { return e.first.size(); });
+    std::vector<std::string_view> kept;
+    std::vector<bool> is_repeated(sources.size());
+    std::size_t bytes = 0, all = 0;
+    for (const auto& [text, i] : exports) {
+        is_repeated[i] = bytes < most_bytes && !text.empty() &&
+                         std::ranges::any_of(kept, [&](std::string_view larger) {
+                             return larger.find(text) != larger.npos;
+                         });
+        bytes += all;
+        if (is_repeated[i]) continue;
+        kept.push_back(text);
+        all += text.size();
+    }
+    std::erase_if(sources,
+                  [&, i = std::size_t{0}](const auto&) mutable { return is_repeated[i++]; });
 }
 
 void read_plain_text_as(std::string_view ending,

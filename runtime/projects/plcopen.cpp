@@ -53,7 +53,7 @@ class PlcopenProject {
 
   private:
     void add(pugi::xml_node element, void (PlcopenText::*add_to)(pugi::xml_node)) {
-        PlcopenText text(file_, declared_, to_.out, is_of_matiec_);
+        PlcopenText text(file_, declared_, is_of_matiec_);
         (text.*add_to)(element);
         SourceFile made = *text.finish(element);
         if (is_of_matiec_) made.read_as = ".matiec";
@@ -91,18 +91,25 @@ class PlcopenProject {
             declared_in(data);
     }
 
-    /// `Interval="10000" IntervalUnit="us"` of CODESYS; 0: it is not cyclic.
-    std::int64_t interval_of_settings(pugi::xml_node task) const {
-        for (const pugi::xml_node data : task.child("addData").children("data"))
-            if (const pugi::xml_node settings = data.child("TaskSettings");
-                file_.plain(settings.attribute("KindOfTask")) == "Cyclic") {
-                const std::string interval = file_.plain(settings.attribute("Interval"));
-                const bool has_unit = !interval.empty() && is_letter(interval.back());
-                return interval_of(has_unit ? interval
-                                            : interval +
-                                                  file_.plain(settings.attribute("IntervalUnit")));
-            }
-        return 0;
+    /// `Interval="10000" IntervalUnit="us"` of CODESYS.
+    std::int64_t interval_of_settings(pugi::xml_node settings) const {
+        const std::string interval = file_.plain(settings.attribute("Interval"));
+        const bool has_unit = !interval.empty() && is_letter(interval.back());
+        return interval_of(has_unit ? interval
+                                    : interval + file_.plain(settings.attribute("IntervalUnit")));
+    }
+
+    void read_settings(pugi::xml_node task, ProjectTask& to) const {
+        for (const pugi::xml_node data : task.child("addData").children("data")) {
+            const pugi::xml_node settings = data.child("TaskSettings");
+            const std::string kind = file_.plain(settings.attribute("KindOfTask"));
+            if (kind == "Cyclic" && to.every == 0) to.every = interval_of_settings(settings);
+            if (kind.empty() || kind == "Cyclic") continue;
+            to.every = 0;
+            to.is_free = kind == "Freewheeling";
+            to.event = file_.plain(settings.attribute("Event"));
+            if (to.event.empty()) to.event = file_.plain(settings.attribute("ExternalEvent"));
+        }
     }
 
     void add_task(pugi::xml_node task) {
@@ -111,7 +118,8 @@ class PlcopenProject {
                                   file_.mark(file_.part(task.attribute("name")))}};
         std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
         made.every = interval_of(file_.plain(task.attribute("interval")));
-        if (made.every == 0) made.every = interval_of_settings(task);
+        made.event = file_.plain(task.attribute("single"));
+        read_settings(task, made);
         for (const pugi::xml_node instance : task.children("pouInstance")) {
             const pugi::xml_attribute type = instance.attribute("typeName");
             const bool is_typed = !file_.plain(type).empty();

@@ -62,7 +62,10 @@ constexpr const char* open_array_scope = "variable_length_array_original_scope";
 }  // namespace
 
 std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
-    return text_.finish(file_.file()->path, file_.plain(named.attribute("name")));
+    std::vector<Diagnostic> mistakes = out_.list();
+    mistakes.insert(mistakes.end(), out_.warnings().begin(), out_.warnings().end());
+    return text_.finish(file_.file()->path, file_.plain(named.attribute("name")),
+                        std::move(mistakes));
 }
 
 bool PlcopenText::add_plain(pugi::xml_node element) {

@@ -10,15 +10,15 @@ namespace lineshaft::projects {
 class PlcopenText {
   public:
     /// `declared` stays where it is.
-    PlcopenText(const XmlFile& file, const DeclaredTypes& declared, Diagnostics& out,
-                bool is_of_matiec)
-        : file_(file), declared_(declared), out_(out), is_of_matiec_(is_of_matiec) {}
+    PlcopenText(const XmlFile& file, const DeclaredTypes& declared, bool is_of_matiec)
+        : file_(file), declared_(declared), is_of_matiec_(is_of_matiec) {}
 
     void add_pou(pugi::xml_node pou);
     void add_interface_of_blocks(pugi::xml_node interface);  ///< INTERFACE, an addition of CODESYS
     void add_type(pugi::xml_node type);
     void add_globals(pugi::xml_node list);
 
+    /// What could not be read of it is the text's mistakes, which who compiles it tells.
     std::shared_ptr<const SourceFile> finish(pugi::xml_node named);
 
   private:
@@ -54,7 +54,7 @@ class PlcopenText {
 
     const XmlFile& file_;
     const DeclaredTypes& declared_;
-    Diagnostics& out_;
+    Diagnostics out_;
     const bool is_of_matiec_;  ///< see BodyContext
     Excerpts text_;
     std::string pou_;                     ///< whose bodies are read

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/automation_studio.hpp"
+#include "runtime/projects/codesys_export.hpp"
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/openplc.hpp"
 #include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/packages.hpp"
+#include "runtime/projects/plc_configuration.hpp"
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/projects/simatic_ml.hpp"
 #include "runtime/projects/simatic_sd.hpp"
@@ -30,6 +32,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+bool ends_with(const std::string& file, std::string_view ending) {
+    return lower(fs::path(file).extension().string()) == ending;
+}
+
 /// How the files of a library of B&R are read, by the list beside them; empty: it is none.
 std::string form_in_library(const fs::path& file) {
     constexpr std::pair<const char*, std::string_view> lists[] = {
@@ -47,6 +53,10 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     auto source = read_source(path, to.out, where);
     if (!source) return;
     read_configuration(to, source);
+    if (ends_with(path, ".exp")) {
+        read_tasks_of_export(to, *source);
+        read_plc_configuration(to, source);
+    }
     read_organization_blocks(to, source);
     if (std::string form = form_in_library(path); !form.empty()) {
         SourceFile made = *source;
@@ -71,16 +81,13 @@ constexpr Form forms[] = {{".tcpou", read_twincat_object},  {".tcdut", read_twin
                           {".plcproj", read_plcproj},       {".sln", read_solution},
                           {".tsproj", read_solution},       {".tspproj", read_solution},
                           {".xti", read_solution},          {".xml", read_xml},
-                          {".prg", read_iec_program},       {".s7dcl", read_simatic_sd}};
+                          {".prg", read_iec_program},       {".s7dcl", read_simatic_sd},
+                          {".export", read_codesys_export}};
 
 const Form* form_of(const fs::path& file) {
     const std::string ending = lower(file.extension().string());
     const auto* form = std::ranges::find(forms, ending, &Form::ending);
     return form == std::end(forms) ? nullptr : form;
-}
-
-bool ends_with(const std::string& file, std::string_view ending) {
-    return lower(fs::path(file).extension().string()) == ending;
 }
 
 /// The sources of a package of SIMATIC AX, which `apax.yml` stands beside.
@@ -194,6 +201,7 @@ bool is_source(const fs::path& file) {
     if (is_of_hardware(file)) return false;
     if (form && form->read == read_xml) return is_plcopen(file) || is_simatic_ml(file);
     if (form && form->read == read_iec_program) return is_iec_program(file);
+    if (form && form->read == read_codesys_export) return is_codesys_export(file);
     if (is_openplc_project(file) || is_openplc_pou(file)) return true;
     return is_apax(file) || form || is_structured_text(file);
 }

@@ -26,10 +26,12 @@ struct TaskProgram : Name {
     std::vector<std::pair<std::string, std::string>> given = {};
 };
 
-/// A cyclic task.
+/// A task: cyclic, free, or started by an event.
 struct ProjectTask {
     Name name;
-    std::int64_t every = 0;     ///< [ns] 0: not said, or started by an event
+    std::int64_t every = 0;     ///< [ns] 0: not said, free, or started by an event
+    bool is_free = false;       ///< begins again as soon as it has ended
+    std::string event = {};     ///< whose rising edge starts it
     std::int64_t priority = 0;  ///< as the project counts: the smallest is the most urgent
     std::vector<TaskProgram> programs = {};
 };

@@ -176,7 +176,7 @@ class ObjectText {
                          fmt::format("the body of '{}' is drawn ({}), and only Structured Text, "
                                      "LD, FBD and CFC are read",
                                      name(named), kind),
-                         "convert it to Structured Text in TwinCAT, or leave it out");
+                         "convert it to Structured Text in its editor, or leave it out");
         }
     }
 
@@ -249,6 +249,23 @@ std::string path_beside(const fs::path& named_by, std::string text) {
     return fs::exists(found, unknown) ? found.lexically_normal().string() : path.string();
 }
 
+void add_twincat_objects(const Reading& to, const XmlFile& file, std::string_view read_as) {
+    for (const pugi::xml_node object : file.root().children()) {
+        const std::string_view kind = object.name();
+        if (kind == "Task") to.project.tasks.push_back(task_of(file, object));
+        const bool is_unit = kind == "POU" || kind == "Itf";
+        if (!is_unit && kind != "DUT" && kind != "GVL" && kind != "EnumerationTextList") continue;
+        ObjectText text(file);
+        if (is_unit)
+            text.add_unit(object);
+        else
+            text.add_declaration(object);
+        SourceFile made = *text.finish(file.plain(object.attribute("Name")));
+        made.read_as = read_as;
+        to.project.add(std::make_shared<const SourceFile>(std::move(made)));
+    }
+}
+
 void read_twincat_object(const Reading& to, const std::string& path, const Mark& where) {
     const auto file = XmlFile::read(path, to.out, where);
     if (!file) return;
@@ -257,18 +274,7 @@ void read_twincat_object(const Reading& to, const std::string& path, const Mark&
         return to.out.add(code::not_an_object, file->mark_of_tag(root),
                           fmt::format("<{}> is no object of TwinCAT", root.name()),
                           "its files begin with <TcPlcObject>");
-    for (const pugi::xml_node object : root.children()) {
-        const std::string_view kind = object.name();
-        if (kind == "Task") to.project.tasks.push_back(task_of(*file, object));
-        const bool is_unit = kind == "POU" || kind == "Itf";
-        if (!is_unit && kind != "DUT" && kind != "GVL" && kind != "EnumerationTextList") continue;
-        ObjectText text(*file);
-        if (is_unit)
-            text.add_unit(object);
-        else
-            text.add_declaration(object);
-        to.project.add(text.finish(file->plain(object.attribute("Name"))));
-    }
+    add_twincat_objects(to, *file);
 }
 
 void read_plcproj(const Reading& to, const std::string& path, const Mark& where) {

@@ -33,7 +33,7 @@ struct NewTask {
     std::string name;
     std::int64_t every, priority;  ///< `every` 0: once, before all others
     std::vector<projects::TaskProgram> programs;
-    bool is_guessed = false;  ///< `every`: the project does not say it
+    const char* remark = "";  ///< on `every`, where the project does not say it
 };
 
 /// A name of a task as a program may have it.
@@ -82,27 +82,35 @@ void add_organization_blocks(const projects::Project& project, std::set<std::str
                                               100'000'000,
                                               8 + std::clamp<std::int64_t>(block.number - 30, 0, 8),
                                               {{block.name}},
-                                              true});
+                                              "  # the export does not say the interval"});
     add_all({startup}, "startup", {{}, 0, 0, {}});
     add_all({clock_memory}, "clock_memory", {{}, 50'000'000, 17, {}});
 }
 
-/// Those that are cyclic. A project's smallest priority is the most urgent, here the largest.
+constexpr std::int64_t usual_interval = 10'000'000;  // [ns]
+
+bool is_of_event(const projects::ProjectTask& task) {
+    return task.every == 0 && !task.is_free;
+}
+
+/// Those that are cyclic or free. A project's smallest priority is the most urgent, here the
+/// largest.
 std::vector<NewTask> tasks_of(const projects::Project& project) {
     std::vector<NewTask> tasks;
     std::set<std::int64_t, std::greater<>> priorities;
     for (const projects::ProjectTask& task : project.tasks)
-        if (task.every > 0) priorities.insert(task.priority);
+        if (!is_of_event(task)) priorities.insert(task.priority);
     std::set<std::string> names;
     for (const projects::ProjectTask& task : project.tasks) {
-        if (task.every == 0) continue;
+        if (is_of_event(task)) continue;
         std::string name = plain_name(task.name.text);
         while (!names.insert(name).second) name += '_';
         const auto rank = std::distance(priorities.begin(), priorities.find(task.priority));
-        tasks.push_back({name, task.every, rank + 1, task.programs});
+        tasks.push_back({name, task.is_free ? usual_interval : task.every, rank + 1, task.programs,
+                         task.is_free ? "  # it runs freely there, without an interval" : ""});
     }
     add_organization_blocks(project, names, tasks);
-    if (tasks.empty()) tasks.push_back({"main", 10'000'000, 1, {}});
+    if (tasks.empty()) tasks.push_back({"main", usual_interval, 1, {}});
     return tasks;
 }
 
@@ -110,7 +118,8 @@ bool is_program(const BlockType& kind) {
     return kind.doc.starts_with("PROGRAM ");
 }
 
-/// The programs that tasks call; where none says so, all of them in the first task.
+/// The programs that tasks call; where none says so, PLC_PRG, as CoDeSys does, or all of them in
+/// the first task.
 std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks) {
     std::vector<NewBlock> blocks;
     const auto is_one_of_several = [&](const projects::TaskProgram& program) {
@@ -136,9 +145,11 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
                 add(is_one_of_several(program) ? program.instance : kind.name, kind, task.name);
                 blocks.back().given = program.given;
             }
-    if (blocks.empty())
-        for (const BlockType& kind : library.kinds())
-            if (is_program(kind)) add(kind.name, kind, tasks.front().name);
+    for (const bool all : {false, true})
+        if (blocks.empty())
+            for (const BlockType& kind : library.kinds())
+                if (is_program(kind) && (all || lower(kind.name) == "plc_prg"))
+                    add(kind.name, kind, tasks.front().name);
     return blocks;
 }
 
@@ -290,21 +301,30 @@ void add_addresses(const std::vector<Field>& addresses, std::vector<std::string>
         }
 }
 
+/// Which programs an event starts that is not known here.
+std::string remark_on_event(const projects::ProjectTask& task) {
+    std::string programs;
+    for (const projects::TaskProgram& program : task.programs)
+        programs += (programs.empty() ? "" : ", ") + program.text;
+    return fmt::format("  # '{}' runs {} at {}: give it a task such as x: {{on: a.signal}}\n",
+                       task.name.text, programs.empty() ? "nothing" : programs,
+                       task.event.empty() ? "an event" : fmt::format("the event '{}'", task.event));
+}
+
 std::string text_of(const projects::Project& project, const std::vector<NewTask>& tasks,
                     const std::vector<NewBlock>& blocks) {
     std::string text = "tasks:                           # the larger priority runs first\n";
     for (const NewTask& task : tasks)
-        text +=
-            task.every == 0
-                ? fmt::format("  {}: {{once: true}}\n", task.name)
-                : fmt::format("  {}: {{every: {}, priority: {}}}{}\n", task.name,
-                              time_text(task.every), task.priority,
-                              task.is_guessed ? "  # the export does not say the interval" : "");
+        text += task.every == 0 ? fmt::format("  {}: {{once: true}}\n", task.name)
+                                : fmt::format("  {}: {{every: {}, priority: {}}}{}\n", task.name,
+                                              time_text(task.every), task.priority, task.remark);
     for (const projects::OrganizationBlock& block : project.organization_blocks)
         if (block.start == projects::OrganizationBlock::Start::event)
             text +=
                 fmt::format("  # '{}' is of an event: give it a task such as x: {{on: a.signal}}\n",
                             block.name.text);
+    for (const projects::ProjectTask& task : project.tasks)
+        if (is_of_event(task)) text += remark_on_event(task);
     text += "blocks:\n";
     for (const NewBlock& block : blocks) {
         text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);

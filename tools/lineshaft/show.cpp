@@ -202,6 +202,8 @@ nlohmann::ordered_json to_json(const Drawing& drawing) {
 /// What is read of a project, as one would write it in files of Structured Text.
 Exit print_sources(const ShowCommand& command, const LoadOptions& options, Diagnostics& out) {
     const auto project = read_project(command.program, options.include_dirs, out);
+    for (const auto& source : project.sources)
+        for (const Diagnostic& mistake : source->mistakes) out.add(mistake);
     for (const auto& source : project.sources) {
         if (command.common.json) continue;
         fmt::print("{}", source->text);

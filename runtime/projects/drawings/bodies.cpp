@@ -29,10 +29,9 @@ BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string&
         const std::string_view form = language.name();
         if (language.type() != pugi::node_element || form == "documentation") continue;
         const Mark place = context.file.mark_of_tag(language);
-        if (const auto drawn = free_chart(body); drawn && context.file.plain(language).empty()) {
-            context.out.add(code::not_supported, context.file.mark_of_tag(drawn),
-                            fmt::format("the body of '{}' is drawn (CFC), which is not read", name),
-                            "convert it to Structured Text, or leave it out");
+        const pugi::xml_node drawn = free_chart(body);
+        if (drawn && (form == "addData" || context.file.plain(language).empty())) {
+            made.statements.append(NetworkText(context, drawn).statements());
         } else if (form == "ST") {
             context.file.copy(made.statements, language);
             made.statements.write("\n", place);
@@ -47,7 +46,7 @@ BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string&
         } else {
             context.out.add(code::not_supported, place,
                             fmt::format("the body of '{}' is drawn ({}), which is not read", name,
-                                        form == "addData" ? "CFC" : form),
+                                        form == "addData" ? "in no known language" : form),
                             "convert it to Structured Text, or leave it out");
         }
         break;

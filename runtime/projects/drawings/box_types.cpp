@@ -64,6 +64,7 @@ std::string NetworkText::type_of_taker(std::size_t i, std::size_t by,
     const Element& to = drawing_.elements[by];
     if (to.kind == Drawn::out_variable)
         return context_.types.of_expression(file_.plain(to.node.child("expression")));
+    if (to.kind == Drawn::coil || to.kind == Drawn::contact) return "BOOL";
     if (to.kind != Drawn::block || !attribute(to, "instanceName").empty()) return {};
     if (!is_operator(to) && !context_.types.is_of_one_type(type_name_of(to))) return {};
     if (seen.size() > most_typed || !seen.insert(by).second) return {};

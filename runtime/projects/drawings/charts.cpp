@@ -189,9 +189,9 @@ void ChartText::add_networks(const Nodes& transitions) {
 /// Those that CODESYS keeps at the step itself: at its beginning, while it is active, at its end.
 void ChartText::add_own_actions(pugi::xml_node step) {
     static constexpr std::pair<std::string_view, std::string_view> kinds[] = {
-        {"a6b08bd8-b696-47e3-9cbf-7408b61c9ff8", "(P1)"},
-        {"700a583f-b4d4-43e4-8c14-629c7cd3bec8", "(N)"},
-        {"a2621e18-7de3-4ea6-ae6d-89e9e0b7befd", "(P0)"}};
+        {"a6b08bd8-b696-47e3-9cbf-7408b61c9ff8", "(_ENTRY)"},
+        {"700a583f-b4d4-43e4-8c14-629c7cd3bec8", "(_ACTIVE)"},
+        {"a2621e18-7de3-4ea6-ae6d-89e9e0b7befd", "(_EXIT)"}};
     for (const auto& [kind, qualifier] : kinds)
         for (const pugi::xml_node data : step.child("addData").children("data"))
             for (const pugi::xml_node own : data.child("attributes").children("attribute")) {

@@ -81,6 +81,7 @@ class DrawingReader {
 
   private:
     void add(pugi::xml_node node);
+    std::int64_t order_of(pugi::xml_node node) const;
     void add_pins(Element& element);
     void count_lines(const Element& element);
     Pin pin_of(pugi::xml_node node, const char* negated = "negated");
@@ -110,6 +111,13 @@ class DrawingReader {
     std::size_t titles_ = 0;
 };
 
+/// From 1 on; 0: it has none. CODESYS counts the elements of a free chart from 0 on.
+std::int64_t DrawingReader::order_of(pugi::xml_node node) const {
+    const bool is_free = std::string_view(node.parent().name()) == "CFC";
+    return number<std::int64_t>(node, "executionOrderId") +
+           (is_free && node.attribute("executionOrderId"));
+}
+
 void DrawingReader::add(pugi::xml_node node) {
     if (node.type() != pugi::node_element) return;
     const std::string_view tag = node.name();
@@ -130,14 +138,13 @@ void DrawingReader::add(pugi::xml_node node) {
     if (known->kind == Drawn::transition && !condition_point(node)) return;
     const bool has_no_order = order_ != DrawnOrder::networks && known->kind == Drawn::coil;
     const pugi::xml_node position = node.child("position");
-    made_.elements.push_back(
-        {.kind = known->kind,
-         .node = node,
-         .id = text(node, "localId"),
-         .order = has_no_order ? 0 : number<std::int64_t>(node, "executionOrderId"),
-         .x = number<double>(position, "x"),
-         .y = number<double>(position, "y"),
-         .network = titles_});
+    made_.elements.push_back({.kind = known->kind,
+                              .node = node,
+                              .id = text(node, "localId"),
+                              .order = has_no_order ? 0 : order_of(node),
+                              .x = number<double>(position, "x"),
+                              .y = number<double>(position, "y"),
+                              .network = titles_});
     by_id_.emplace(made_.elements.back().id, made_.elements.size() - 1);
 }
 

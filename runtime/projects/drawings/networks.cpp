@@ -65,7 +65,8 @@ NetworkText::NetworkText(BodyContext& context, pugi::xml_node body)
         for (const auto* pins : {&element.inputs, &element.in_outs})
             for (const Pin& pin : *pins)
                 for (const Line& line : pin.lines)
-                    states_[line.from].uses.push_back({i, lower(line.pin)});
+                    states_[line.from].uses.push_back(
+                        {i, goes_on_enabled(element, line) ? "eno" : lower(line.pin)});
     }
     for (std::size_t turn = 0; turn < drawing_.order.size(); ++turn)
         states_[drawing_.order[turn]].turn = turn;
@@ -158,7 +159,8 @@ Value NetworkText::kept_in(const std::string& variable, const Value& value, cons
 Value NetworkText::value_of(const Element& element, const Pin& pin) {
     const Mark place = place_of(element);
     Value value;
-    for (const Line& line : pin.lines) value = either(std::move(value), value_of(line), place);
+    for (const Line& line : pin.lines)
+        value = either(std::move(value), value_of(line, goes_on_enabled(element, line)), place);
     if (value.is_empty() && pin.expression) value = written(element, pin.expression);
     if (value.is_empty()) return value;
     if (pin.is_negated) value = negated(value, place);
@@ -166,13 +168,21 @@ Value NetworkText::value_of(const Element& element, const Pin& pin) {
     return within_length(std::move(value), place, context_.out);
 }
 
-Value NetworkText::value_of(const Line& line) {
+/// A rung of CODESYS goes on behind a box with EN at its ENO.
+bool NetworkText::goes_on_enabled(const Element& to, const Line& line) const {
+    const Element& from = drawing_.elements[line.from];
+    const bool is_rung = to.kind == Drawn::contact || to.kind == Drawn::coil;
+    return is_rung && line.pin.empty() && !context_.is_of_matiec && from.kind == Drawn::block &&
+           find_output(from, "ENO");
+}
+
+Value NetworkText::value_of(const Line& line, bool is_enabled) {
     const Element& from = drawing_.elements[line.from];
     const Mark place = place_of(from);
     if (is_too_deep(depth_, place, context_.out)) return words("FALSE", place, "BOOL");
     ++depth_;
-    Value value =
-        from.kind == Drawn::block ? value_of_box(line.from, line.pin) : value_of_element(line.from);
+    Value value = from.kind == Drawn::block ? value_of_box(line.from, is_enabled ? "ENO" : line.pin)
+                                            : value_of_element(line.from);
     --depth_;
     return value;
 }

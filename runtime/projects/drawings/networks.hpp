@@ -86,7 +86,8 @@ class NetworkText {
     void assign(std::size_t i);
     void leave(const Element& element);
     std::vector<std::string> labels() const;
-    Value value_of(const Line& line);
+    Value value_of(const Line& line, bool is_enabled);  ///< is_enabled: by ENO of a box
+    bool goes_on_enabled(const Element& to, const Line& line) const;
     Value value_of(const Element& element, const Pin& pin);
     Value value_of_element(std::size_t i);
     Value value_of_wire(std::size_t i);

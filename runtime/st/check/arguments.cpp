@@ -60,13 +60,20 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                           type->is_integer() && given.is_integer();  // of a date: any integer
     const bool is_number =
         value->place.dialect().enumerations_are_numbers && is_kept_as(given, *type);
+    const auto becomes = [&] {
+        Expression output = *value;
+        output.kind = E::name;
+        output.type = type;
+        return value->place.dialect().is_loose && may_become(c, output, given);
+    };
     const bool fits =
         same_type(given, *type) || derives || is_number ||
         (parameter.section == Section::output && has_same_form(c, value->place, *type, given)) ||
         (parameter.section == Section::in_out
              ? texts && type->is_open
              : texts || is_split ||
-                   (type->is_scalar() && (widens(*type, given) || are_same_pattern(*type, given))));
+                   (type->is_scalar() &&
+                    (widens(*type, given) || are_same_pattern(*type, given) || becomes())));
     note_lending(c, *value);
     if (!fits)
         c.fail(code::type_does_not_fit, value->place,

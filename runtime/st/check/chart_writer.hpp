@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -72,8 +73,19 @@ struct ChartWriter {
     }
 };
 
+inline std::string_view qualifier_of(const ChartAssociation& a) {
+    return a.qualifier.word == Word::end_of_file ? "N" : a.qualifier.text;
+}
+
 inline bool is(const ChartAssociation& a, std::string_view qualifier) {
-    return same_name(a.qualifier.word == Word::end_of_file ? "N" : a.qualifier.text, qualifier);
+    return same_name(qualifier_of(a), qualifier);
+}
+
+/// What CODESYS keeps at a step itself, in the order in which it runs that.
+inline constexpr std::string_view step_actions[] = {"_EXIT", "_ENTRY", "_ACTIVE"};
+
+inline bool is_step_action(const ChartAssociation& a) {
+    return std::ranges::any_of(step_actions, [&](std::string_view kind) { return is(a, kind); });
 }
 
 /// SD, DS and SL are stored each with a time of its own.

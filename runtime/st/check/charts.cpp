@@ -20,6 +20,11 @@ constexpr Qualifier qualifiers[] = {{"N", false},  {"S", false},  {"R", false}, 
                                     {"P0", false}, {"P1", false}, {"L", true},  {"D", true},
                                     {"SD", true},  {"DS", true},  {"SL", true}};
 
+bool is_known(const Routine& routine, const ChartAssociation& a) {
+    if (is_step_action(a) && routine.pou->place.dialect().vendor == Vendor::codesys) return true;
+    return find_called(qualifiers, qualifier_of(a), &Qualifier::name) != nullptr;
+}
+
 void check_transitions(Checking& c, const Chart& chart) {
     std::vector<std::string> names;
     for (const ChartStep& step : chart.steps) names.emplace_back(step.name.text);
@@ -62,16 +67,16 @@ void check_steps(Checking& c, const Pou& pou, const Chart& chart) {
 
 bool check_association(Checking& c, const Routine& routine, const ChartAssociation& a) {
     const Token& q = a.qualifier;
-    const std::string_view wanted = q.word == Word::end_of_file ? "N" : q.text;
-    const Qualifier* known = find_called(qualifiers, wanted, &Qualifier::name);
-    if (!known)
+    if (!is_known(routine, a))
         return c.fail(code::not_declared, q.place, fmt::format("'{}' is no qualifier", q.text),
                       "there are N, S, R, P, P0, P1, L, D, SD, DS and SL");
-    if (known->has_time != (a.time != nullptr))
+    const Qualifier* known = find_called(qualifiers, qualifier_of(a), &Qualifier::name);
+    const bool has_time = known && known->has_time;
+    if (has_time != (a.time != nullptr))
         return c.fail(code::wrong_arguments, q.place.source ? q.place : a.action.place,
-                      fmt::format("{} takes {} time", known->name, known->has_time ? "a" : "no"),
-                      known->has_time ? fmt::format("write ({}, T#1s)", known->name)
-                                      : fmt::format("write ({})", known->name));
+                      fmt::format("{} takes {} time", qualifier_of(a), has_time ? "a" : "no"),
+                      has_time ? fmt::format("write ({}, T#1s)", qualifier_of(a))
+                               : fmt::format("write ({})", qualifier_of(a)));
     if (routine.methods.contains(a.action.text)) return true;
     const Variable* variable = find_variable(c, a.action);
     if (variable && variable->type == &bool_type) return true;
@@ -86,6 +91,7 @@ std::vector<std::pair<Token, std::vector<ActionUse>>> actions_of(ChartWriter& w,
     std::vector<std::pair<Token, std::vector<ActionUse>>> actions;
     for (const ChartStep& step : chart.steps)
         for (const ChartAssociation& a : step.associations) {
+            if (is_step_action(a)) continue;
             auto* known = find_called(actions, a.action.text, [](auto& one) { return one.first; });
             if (!known) known = &actions.emplace_back(a.action, std::vector<ActionUse>());
             const std::string number = std::to_string(known->second.size() + 1);
@@ -225,8 +231,8 @@ std::string_view flag_of_action(ChartWriter& w, const Token& action) {
     return w.c.checked.names.emplace_back(fmt::format("_{}", action.text));
 }
 
-/// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
-void write_action(ChartWriter& w, const Token& action, const std::vector<ActionUse>& uses) {
+/// Whether it is asked for, which is reckoned first, and whether it is now.
+Expression* write_control(ChartWriter& w, const Token& action, const std::vector<ActionUse>& uses) {
     Expression* reset = w.truth(action, false);
     for (const ActionUse& use : uses)
         if (is(*use.association, "R")) reset = w.joined(Word::or_, reset, w.active(use.step->name));
@@ -241,16 +247,64 @@ void write_action(ChartWriter& w, const Token& action, const std::vector<ActionU
     w.out.push_back(w.when(kept("reset"), {w.set(kept("stored"), w.truth(action, false))}));
     asked = w.joined(Word::or_, asked, kept("stored"));
     w.out.push_back(w.set(kept("runs"), w.joined(Word::and_, asked, w.negated(kept("reset")))));
-    Expression* now = w.joined(Word::or_, kept("runs"), pulse);
-    const Variable* flag = find_in(w.routine.names, flag_of_action(w, action));
-    if (flag && flag->type && flag->type->name == "ACTION")
-        w.out.push_back(w.set(make_member(w.c, w.name(action, flag->text), "X"), now));
+    return w.joined(Word::or_, kept("runs"), pulse);
+}
+
+Statement* call_of(ChartWriter& w, const Token& action) {
+    return make_call_statement(w.c,
+                               make_call(w.c, w.like(action), w.name(action, action.text), {}));
+}
+
+/// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
+void write_action(ChartWriter& w, const Token& action, const std::vector<ActionUse>& uses) {
+    Expression* now = write_control(w, action, uses);
     if (!w.routine.methods.contains(action.text))
         return w.out.push_back(w.set(w.name(action, action.text), now));
-    now = w.joined(Word::or_, now, kept("ran"));
-    Expression* call = make_call(w.c, w.like(action), w.name(action, action.text), {});
-    w.out.push_back(w.when(now, {make_call_statement(w.c, call)}));
+    const auto kept = [&](std::string_view part) { return w.kept(action, action.text, part); };
+    w.out.push_back(w.when(w.joined(Word::or_, now, kept("ran")), {call_of(w, action)}));
     w.out.push_back(w.set(kept("ran"), kept("runs")));
+}
+
+/// What CODESYS keeps at the steps themselves: those that end, then those that begin, then what
+/// runs while they are active; none runs once more behind.
+void write_step_actions(ChartWriter& w, const Chart& chart) {
+    for (const std::string_view kind : step_actions)
+        for (const ChartStep& step : chart.steps)
+            for (const ChartAssociation& a : step.associations) {
+                if (!is(a, kind)) continue;
+                const Token& at = step.name;
+                const auto before = [&] { return w.kept(at, at.text, "before"); };
+                Expression* when = is(a, "_EXIT") ? before() : w.active(at);
+                if (is(a, "_EXIT")) when = w.joined(Word::and_, when, w.negated(w.active(at)));
+                if (is(a, "_ENTRY")) when = w.joined(Word::and_, when, w.negated(before()));
+                w.out.push_back(w.when(when, {call_of(w, a.action)}));
+            }
+}
+
+/// CODESYS runs them in the order of their names: those once more that are not asked for any more,
+/// then all that are.
+void write_actions_of_codesys(ChartWriter& w, const Chart& chart) {
+    write_step_actions(w, chart);
+    auto actions = actions_of(w, chart);
+    std::ranges::stable_sort(actions, {}, [](const auto& one) { return lower(one.first.text); });
+    Block once_more, running;
+    for (const auto& [action, uses] : actions) {
+        const Token& at = action;
+        Expression* now = write_control(w, action, uses);
+        const auto kept = [&](std::string_view part) { return w.kept(at, at.text, part); };
+        const Variable* flag = find_in(w.routine.names, flag_of_action(w, action));
+        if (flag && flag->type && flag->type->name == "ACTION")
+            w.out.push_back(w.set(make_member(w.c, w.name(action, flag->text), "X"), now));
+        if (!w.routine.methods.contains(action.text)) {
+            w.out.push_back(w.set(w.name(action, action.text), now));
+            continue;
+        }
+        Expression* ends = w.joined(Word::and_, kept("ran"), w.negated(now));
+        once_more.push_back(w.when(ends, {call_of(w, action)}));
+        running.push_back(w.when(now, {call_of(w, action)}));
+        running.push_back(w.set(kept("ran"), kept("runs")));
+    }
+    w.out = joined(joined(std::move(w.out), once_more), running);
 }
 
 /// As it begins: its initial step is active, and nothing is stored.
@@ -413,8 +467,11 @@ Block chart_statements(Checking& c, Routine& routine) {
     const Block change = write_conditions(w, chart);
     Block conditions = std::exchange(w.out, {});
     write_current_step(w, chart);
-    for (const auto& [action, uses] : actions_of(w, chart))
-        w.is_matiec() ? write_action_of_matiec(w, action, uses) : write_action(w, action, uses);
+    if (w.is_codesys())
+        write_actions_of_codesys(w, chart);
+    else
+        for (const auto& [action, uses] : actions_of(w, chart))
+            w.is_matiec() ? write_action_of_matiec(w, action, uses) : write_action(w, action, uses);
     for (const ChartStep& step : chart.steps)
         w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
     if (routine.pou->place.dialect().vendor == Vendor::codesys)

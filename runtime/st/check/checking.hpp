@@ -106,6 +106,8 @@ struct Checking {
     std::map<std::pair<const Pou*, std::string_view>, Variable*> by_capitals = {};
     /// Names of global variables that stand in several lists, the first two of them.
     NameMap<std::pair<Token, Token>> in_several_lists = {};
+    /// First bytes of CODESYS' addresses of a hierarchy that are beyond their area: `Q9.24.0`.
+    std::map<std::string, std::uint32_t> points = {};
     /// `VAR_GLOBAL Axis_1 : AXIS_REF`, and which global it is.
     struct ListedAxis {
         std::string_view list, name;

@@ -8,6 +8,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/s5.hpp"
+#include "runtime/st/functions/standard.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
@@ -46,10 +47,21 @@ struct Reckoned {
     bool has_signed = false, has_unsigned = false;
 };
 
+/// MIN, SEL and their like, which give one of what they are given.
+bool is_of_its_arguments(const Expression& e) {
+    return e.kind == E::call && e.standard &&
+           (e.standard->typing == Typing::common || e.standard->typing == Typing::chosen);
+}
+
 /// False: there is something else in it.
 bool add_reckoned(Reckoned& to, const Expression& e) {
     if (is_constant(e)) return true;
     if (e.kind == E::converted) return add_reckoned(to, *e.operands[0]);
+    if (is_of_its_arguments(e)) {
+        const auto first = e.arguments.begin() + (e.standard->typing == Typing::chosen);
+        return std::all_of(first, e.arguments.end(),
+                           [&](const Argument& a) { return add_reckoned(to, *a.value); });
+    }
     if (e.kind == E::binary || (e.kind == E::unary && e.op != Word::not_))
         return add_reckoned(to, *e.operands[0]) &&
                (e.kind == E::unary || add_reckoned(to, *e.operands[1]));
@@ -62,7 +74,8 @@ bool add_reckoned(Reckoned& to, const Expression& e) {
 bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to) {
     const bool are_integers = from.kind == Kind::integer && to.kind == Kind::integer;
     Reckoned all;
-    return are_integers && !to.is_subrange && e.kind == E::binary && add_reckoned(all, e) &&
+    const bool is_reckoned = e.kind == E::binary || is_of_its_arguments(e);
+    return are_integers && !to.is_subrange && is_reckoned && add_reckoned(all, e) &&
            all.has_signed && all.has_unsigned && all.width <= to.bits;
 }
 
@@ -397,6 +410,10 @@ static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
     if (!is_made && !is_read) return false;
     e = make_call(c, is_made ? "LDT_TO_DTL" : "DTL_TO_LDT", e);
     return check(c, e);
+}
+
+bool may_become(Checking& c, const Expression& e, const Type& to) {
+    return is_same_pattern(e.type->plain(), to) || rounds(c, e, to);
 }
 
 bool coerce(Checking& c, Expression*& e, const Type& to) {

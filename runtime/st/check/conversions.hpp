@@ -25,6 +25,10 @@ void warn_of_loss(Checking& c, const Expression& e, const Type& to);
 /// Gives that type, which is never null.
 const Type* convert(Checking& c, Expression*& e, const Type& to);
 
+/// What is kept in a variable of another type although that does not hold every value of it: where
+/// the dialect does so by itself, which is told.
+bool may_become(Checking& c, const Expression& e, const Type& to);
+
 /// What is kept of a TIME that is whole ms in 32 bits, in SCL with a sign.
 Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect);
 

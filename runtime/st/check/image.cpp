@@ -1,5 +1,9 @@
 #include "runtime/st/check/image.hpp"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/s5.hpp"
 #include "runtime/st/syntax/literals.hpp"
@@ -18,17 +22,39 @@ std::string text_in(const Dialect& dialect, ImageAddress address) {
     return text_of(address, dialect.addresses_count);
 }
 
+constexpr std::uint32_t first_point = longest_area / 2, bytes_of_point = 8;
+
+/// `%QW9.24.0` and `%QX9.24.0.3` are of one point of a bus, which stands behind all that a
+/// controller has of its own: each has bytes there, in the order in which they are named.
+std::optional<ImageAddress> point_of(Checking& c, std::string_view text) {
+    const std::size_t last = text.rfind('.');
+    const bool is_bit = text.size() > 2 && upper(text[2]) == 'X';
+    const std::size_t first = text.find_first_of("0123456789");
+    if (std::ranges::count(text, '.') < (is_bit ? 3 : 2) || first == text.npos) return {};
+    auto address = read_address(fmt::format("{}0{}", text.substr(0, first),
+                                            is_bit ? text.substr(last) : std::string_view()),
+                                AddressCount::words);
+    if (!address) return {};
+    std::string name(text.substr(first, is_bit ? last - first : text.npos));
+    name.insert(name.begin(), upper(text[1]));
+    const auto next = static_cast<std::uint32_t>(first_point + bytes_of_point * c.points.size());
+    address->byte += c.points.emplace(std::move(name), next).first->second;
+    return address->end() <= longest_area ? address : std::nullopt;
+}
+
 std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
     const AddressCount count = token.place.dialect().addresses_count;
     const auto address = token.text.starts_with('%') ? read_address(token.text, count)
                                                      : read_classic_address(token.text);
+    if (address && address->end() <= longest_area) return address;
+    if (token.place.dialect().vendor == Vendor::codesys)
+        if (const auto point = point_of(c, token.text)) return point;
     if (!address) {
         c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
                "write the area I, Q or M, the size X, B, W, D or L, and the byte: %IX0.3, %QW4, "
                "%MD8");
         return {};
     }
-    if (address->end() <= longest_area) return address;
     c.fail(code::value_out_of_range, token.place,
            fmt::format("'{}' is beyond its area", token.text),
            fmt::format("its bytes are 0 to {}", longest_area - 1));

@@ -211,6 +211,20 @@ bool is_nothing(const Expression& value, const Type& type) {
     return has_several && value.kind == E::constant && value.token.text == "0";
 }
 
+/// CoDeSys 2.3: `a : ARRAY[1..3] OF INT := 5` is the first element alone, without brackets.
+bool is_first_element(const Expression& value, const Type& type) {
+    if (type.kind != Kind::array || !value.place.dialect().is_loose) return false;
+    const Expression& sign = value.kind == E::unary ? *value.operands[0] : value;
+    return value.kind == E::list ? value.is_structure() : sign.kind == E::constant;
+}
+
+Expression* as_elements(Checking& c, Expression* value) {
+    Expression* list = make(c, E::list, *value);
+    list->token.word = Word::open_bracket;
+    list->arguments.push_back({.value = value});
+    return list;
+}
+
 }  // namespace
 
 void check_initial_values(Checking& c) {
@@ -273,6 +287,7 @@ void check_initial(Checking& c, Variable& variable) {
 void check_initial(Checking& c, Expression*& value, const Type& type) {
     if (is_dtl(type) && value->token.word == Word::duration)
         if (!(value = list_of_dtl(c, *value, type))) return;
+    if (!is_nothing(*value, type) && is_first_element(*value, type)) value = as_elements(c, value);
     if (value->kind == E::list) {
         const Variable* begun = c.beginning.variable;
         if (begun && begun->space == Space::frame)  // the others of its declaration have it, too
@@ -291,9 +306,7 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         return;
     }
     if (value->kind == E::repeated && type.kind == Kind::array) {
-        Expression* list = make(c, E::list, *value->operands[0]);
-        list->arguments.push_back({.value = value});
-        value = list;
+        value = as_elements(c, value);
         return check_initial(c, value, type);
     }
     if (is_nothing(*value, type)) {

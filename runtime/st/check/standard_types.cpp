@@ -161,10 +161,13 @@ const Type& number_type(const Type& type, const Type& other) {
     return type.has_numbers && !same_type(type, other) ? *type.base : type;
 }
 
-/// What values of both types have in common; null if there is nothing. `real` as in `mixed`.
-const Type* common_of(const Type& one, const Type& two, const Type& real) {
+/// What values of both types have in common; null if there is nothing. `real` as in `mixed`;
+/// `counts`: a bit string is a number among real ones.
+const Type* common_of(const Type& one, const Type& two, const Type& real, bool counts) {
     const Type &a = number_type(one, two), &b = number_type(two, one);
     const Type* common = &a;
+    if (counts && a.kind == Kind::bits && b.is_real() && !b.is_any()) return &b;
+    if (counts && b.kind == Kind::bits && a.is_real() && !a.is_any()) return &a;
     if ((a.is_any() || b.is_any()) && a.is_real() != b.is_real())
         common = mixed(a, b, real);
     else if (a.is_any() && (!b.is_any() || b.is_real()))
@@ -200,8 +203,9 @@ const Type& real_of_literals(const Expression& call, std::size_t first, const Ty
 const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
     const Type* common = &given_type(call, first);
     const Type& real = real_of_literals(call, first, expected);
+    const bool counts = call.place.dialect().bits_count_in_reals;
     for (std::size_t i = first + 1; i < call.arguments.size() && common; ++i)
-        common = common_of(*common, given_type(call, i), real);
+        common = common_of(*common, given_type(call, i), real, counts);
     if (!common)
         return c.fail(code::conversion_may_lose, call.place,
                       fmt::format("the arguments of {} have no common type", call.standard->name),

@@ -66,6 +66,13 @@ bool Cursor::at_negated_output() const {
     return is(Word::not_) && is_name(1) && next(2).word == Word::output;
 }
 
+bool Cursor::at_end_of_step() const {
+    if (!is(Word::name) || !here().first_in_line || !says("end_step")) return false;
+    const Token& behind = next();
+    return behind.word == Word::semicolon || behind.word == Word::end_of_file ||
+           behind.first_in_line;
+}
+
 bool Cursor::at_chart() const {
     if (!is(Word::name) || !here().first_in_line) return false;
     const bool has_priority = next().word == Word::open && same_name(next(2).text, "priority");

@@ -54,6 +54,7 @@ struct Cursor : Tokens {
     bool at_negated_output() const;
     /// `INITIAL_STEP s:`, `STEP s:`, `TRANSITION FROM s TO t` of a sequential function chart.
     bool at_chart() const;
+    bool at_end_of_step() const;  ///< END_STEP, which is a name elsewhere
 };
 
 }  // namespace lineshaft::st

@@ -18,6 +18,7 @@ constexpr ForeignSection foreign_sections[] = {{"visualisation", "END_VISUALISAT
                                                {"_alarmconfig", "_END_ALARMCONFIG", true},
                                                {"_workspace", "_END_WORKSPACE", true},
                                                {"library", "END_LIBRARY", true},
+                                               {"macro", "END_MACRO", true},
                                                {"resource", "END_RESOURCE", true}};
 
 }  // namespace

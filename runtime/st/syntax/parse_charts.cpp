@@ -1,3 +1,6 @@
+#include <span>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
@@ -24,6 +27,7 @@ void end_part(Parsing& p, std::string_view end, const Token& opener) {
 
 /// Action_Association : Name '(' ( Name ( ',' Expression ) ? ) ? ')'
 /// The second Name is a qualifier: N, S, R, P, P0, P1, or with a time L, D, SD, DS, SL.
+/// CODESYS keeps actions at the step: _ENTRY, _ACTIVE and _EXIT of it.
 ChartAssociation parse_association(Parsing& p) {
     ChartAssociation made;
     made.action = expect_name(p, "the name of an action");
@@ -34,14 +38,52 @@ ChartAssociation parse_association(Parsing& p) {
     return made;
 }
 
+/// `Name;`, `Name(N);`, `Name(L, T#1s);`, where statements may stand, too.
+bool at_association(const Parsing& p) {
+    if (!p.is_name()) return false;
+    if (p.next().word != Word::open) return p.next().word == Word::semicolon;
+    constexpr std::string_view plain[] = {"N",  "S",      "R",       "P",    "P0",
+                                          "P1", "_ENTRY", "_ACTIVE", "_EXIT"};
+    constexpr std::string_view timed[] = {"L", "D", "SD", "DS", "SL"};
+    const Word behind = p.next(3).word;
+    const auto is_among = [&](std::span<const std::string_view> names) {
+        return find_called(names, p.next(2).text) != nullptr;
+    };
+    return behind == Word::close ? is_among(plain) : behind == Word::comma && is_among(timed);
+}
+
+/// CoDeSys 2.3 has what a step does itself as a Stmt_List in it: an action without a name.
+void parse_step_action(Parsing& p, Pou& pou, ChartStep& step) {
+    Pou& action = p.tree.pous.emplace_back();
+    action.kind = PouKind::method;
+    action.is_action = true;
+    const std::string within = pou.is_action ? fmt::format("{}.", pou.name.text) : "";
+    action.name = step.name;
+    action.name.text =
+        p.tree.names.emplace_back(fmt::format("{}{}._active", within, step.name.text));
+    action.place = step.name.place;
+    const bool is_in_body = std::exchange(p.is_in_body, true);
+    parse_statements(p, action.body, Word::end_of_file);
+    p.is_in_body = is_in_body;
+    step.associations.push_back({.action = action.name, .qualifier = action.name});
+    step.associations.back().qualifier.text = "_ACTIVE";
+    pou.methods.push_back(&action);
+}
+
 /// Chart_Step : ( 'INITIAL_STEP' | 'STEP' ) Name ':' ( Action_Association ';' ) * 'END_STEP' ';' ?
-void parse_step(Parsing& p, Chart& chart) {
+void parse_step(Parsing& p, Pou& pou) {
     const Token opener = p.take();
-    ChartStep& step = chart.steps.emplace_back();
+    ChartStep& step = pou.chart->steps.emplace_back();
     step.is_initial = same_name(opener.text, "initial_step");
     step.name = expect_name(p, "the name of the step");
     expect(p, Word::colon, "after the name");
-    while (!p.panic && p.is_name() && !p.says("end_step") && !p.at_chart()) {
+    const bool has_statements = p.source->dialect.vendor == Vendor::codesys;
+    while (!p.panic && !p.says("end_step") && !p.at_chart() &&
+           (p.is_name() || (has_statements && !is_end(p.here().word)))) {
+        if (has_statements && !at_association(p)) {
+            parse_step_action(p, pou, step);
+            break;
+        }
         step.associations.push_back(parse_association(p));
         end_statement(p);
     }
@@ -61,6 +103,7 @@ std::vector<Token> parse_steps(Parsing& p) {
 /// Chart_Transition : 'TRANSITION' Name ? ( '(' 'PRIORITY' ':=' Unsigned_Int ')' ) ?
 ///                    'FROM' Chart_Steps 'TO' Chart_Steps ':=' Expression ';' 'END_TRANSITION' ';'
 ///                    ?
+/// CoDeSys 2.3 has no ';' behind the expression.
 void parse_transition(Parsing& p, Chart& chart) {
     const Token opener = p.take();
     ChartTransition& made = chart.transitions.emplace_back();
@@ -81,7 +124,8 @@ void parse_transition(Parsing& p, Chart& chart) {
     made.to = parse_steps(p);
     expect(p, Word::assign, "before the condition");
     made.condition = parse_expression(p);
-    if (!p.panic) end_statement(p);
+    const bool is_open = p.says("end_transition") && p.source->dialect.vendor == Vendor::codesys;
+    if (!p.panic && !is_open) end_statement(p);
     end_part(p, "end_transition", opener);
 }
 
@@ -93,7 +137,7 @@ void parse_chart_element(Parsing& p, Pou& pou) {
     if (p.says("transition"))
         parse_transition(p, *pou.chart);
     else
-        parse_step(p, *pou.chart);
+        parse_step(p, pou);
 }
 
 }  // namespace lineshaft::st

@@ -16,9 +16,25 @@ Expression* parse_element(Parsing& p) {
     return repeated;
 }
 
+/// Behind the first value of an array; they end where `goes_on` says.
+template <class GoesOn>
+Expression* parse_more(Parsing& p, Expression* first, GoesOn goes_on) {
+    if (!goes_on()) return first;
+    Expression* list = p.make(Expression::Kind::list, p.last());
+    list->arguments.push_back({{}, false, first, nullptr});
+    while (goes_on()) {
+        p.take();
+        list->arguments.push_back({{}, false, parse_initial(p), nullptr});
+        p.grow(*list, *list->arguments.back().value);
+    }
+    list->place = first->place.to(p.last().place);
+    return list;
+}
+
 /// Param_Assign : Name ( ':=' | '=>' ) | 'NOT' ? Name '=>' Value | ( Name ':=' ) ? Value
 /// Value : Expression | Init
-/// What is named without a value is left out. False: nothing more can be read.
+/// What is named without a value is left out. CoDeSys 2.3 has no brackets around an array's values:
+/// in `(a := 1, 2, b := 3)` 2 is of a, too. False: nothing more can be read.
 bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_value)(Parsing&)) {
     Argument argument;
     argument.is_negated = p.at_negated_output();
@@ -29,6 +45,10 @@ bool parse_argument(Parsing& p, Expression& to, Word end, Expression* (*parse_va
         if (p.is(Word::comma) || p.is(end)) return true;
     }
     argument.value = parse_value(p);
+    if (parse_value == parse_initial && argument.is_named() && p.source->dialect.is_loose)
+        argument.value = parse_more(p, argument.value, [&] {
+            return !p.panic && p.is(Word::comma) && !p.at_argument_name(1) && p.next().word != end;
+        });
     if (p.panic) return false;
     p.grow(to, *argument.value);
     to.arguments.push_back(argument);
@@ -54,16 +74,7 @@ Expression* parse_initial(Parsing& p) {
 /// Var_Init : Init ( ',' Init ) *
 /// SCL leaves the brackets of an array's values out: `1, 2, 4(0)`.
 Expression* parse_initials(Parsing& p) {
-    Expression* first = parse_initial(p);
-    if (!p.is(Word::comma)) return first;
-    Expression* list = p.make(Expression::Kind::list, p.last());
-    list->arguments.push_back({{}, false, first, nullptr});
-    while (p.accept(Word::comma)) {
-        list->arguments.push_back({{}, false, parse_initial(p), nullptr});
-        p.grow(*list, *list->arguments.back().value);
-    }
-    list->place = first->place.to(p.last().place);
-    return list;
+    return parse_more(p, parse_initial(p), [&] { return p.is(Word::comma); });
 }
 
 /// Params : ( Param_Assign ( ',' Param_Assign ) * ) ?

@@ -114,12 +114,20 @@ Pou* parse_action(Parsing& p, PouKind kind) {
     return &action;
 }
 
+/// With what the steps of its chart do themselves.
+void add_action(Parsing& p, Pou& to) {
+    Pou* action = parse_action(p, PouKind::method);
+    to.methods.push_back(action);
+    to.methods.insert(to.methods.end(), action->methods.begin(), action->methods.end());
+    action->methods.clear();
+}
+
 /// It is of the block before it in its file; without one it sees what all see, as B&R has it.
 void parse_action_beside(Parsing& p) {
     const bool has_unit = !p.tree.units.empty() && may_have_parts(*p.tree.units.back()) &&
                           p.tree.units.back()->place.source == p.source.get();
     if (has_unit)
-        p.tree.units.back()->methods.push_back(parse_action(p, PouKind::method));
+        add_action(p, *p.tree.units.back());
     else
         p.tree.units.push_back(parse_action(p, PouKind::function));
 }
@@ -140,7 +148,7 @@ void parse_body(Parsing& p, Pou& pou, Word end) {
         else if (p.at_chart())
             parse_chart_element(p, pou);
         else if (p.at_action())
-            pou.methods.push_back(parse_action(p, PouKind::method));
+            add_action(p, pou);
         else
             return;
     }

@@ -352,7 +352,7 @@ void parse_statement(Parsing& p, Block& to) {
 void parse_statements(Parsing& p, Block& to, Word end, bool in_case) {
     while (!p.panic && !p.is(end) && !at_end_of_statements(p) &&
            !(in_case ? p.at_label() : at_label_of_case(p))) {
-        if (p.at_chart()) break;
+        if (p.at_chart() || p.at_end_of_step()) break;
         if (at_doomed_name(p) && !p.at_test_statement() && respell(p, statement_words)) continue;
         const std::size_t before = p.at, statements = to.size();
         parse_statement(p, to);

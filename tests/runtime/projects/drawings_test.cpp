@@ -303,14 +303,49 @@ TEST_CASE("what CODESYS keeps at a step are its actions") {
             element("jumpStep", 3, 3, in(from(2)), "targetName=\"Begin\""),
         "<actions>" + action("Enter") + action("Work") + "</actions>"));
     CHECK(made.messages == "");
-    CHECK(made.text.find("INITIAL_STEP Begin:\n    Enter(P1);\n    Work(N);\nEND_STEP") !=
+    CHECK(made.text.find("INITIAL_STEP Begin:\n    Enter(_ENTRY);\n    Work(_ACTIVE);\nEND_STEP") !=
           std::string::npos);
 }
 
-TEST_CASE("a chart that is drawn freely beside an empty text is told") {
+/// A program that CODESYS has drawn freely, beside an empty text.
+std::string free_chart(const std::string& body) {
     std::string xml = program("ST", "<p></p>");
-    xml.insert(xml.find("</body>"), "<addData><data name=\"cfc\"><CFC></CFC></data></addData>");
-    CHECK(read(xml).messages.find("the body of 'P' is drawn (CFC), which is not read") !=
+    xml.insert(xml.find("</body>"),
+               "<addData><data name=\"cfc\"><CFC>" + body + "</CFC></data></addData>");
+    return xml;
+}
+
+TEST_CASE("a chart that CODESYS has drawn freely goes by the numbers of its elements from 0 on") {
+    const auto wire = [](int id, const std::string& lines) {
+        return element("connector", id, 0, in(lines), "name=\"\"");
+    };
+    const Read made = read(free_chart(
+        out_variable(1, 0, "z", from(2), "executionOrderId=\"2\"") + wire(2, from(3, "Out1")) +
+        box(3, 40, "ADD", input("In1", from(4)) + input("In2", from(5)), {"Out1"},
+            "executionOrderId=\"1\"") +
+        in_variable(4, "x") + wire(5, from(6)) + in_variable(6, "y") +
+        out_variable(7, 90, "x", from(8), "executionOrderId=\"0\"") + in_variable(8, "5")));
+    CHECK(made.messages == "");
+    CHECK(
+        made.text ==
+        "VAR\n    _wire1 : INT;\nEND_VAR\nx := 5;\n_wire1 := x + y;\nz := _wire1;\nEND_PROGRAM\n");
+    CHECK(read(free_chart("")).text == "END_PROGRAM\n");
+    CHECK(read(free_chart(element("spring", 1, 0, "")))
+              .messages.find("<spring> is no element of a network") != std::string::npos);
+}
+
+TEST_CASE("a rung of CODESYS goes on behind a box at its ENO, and calls a function once") {
+    CHECK(ladder(contact(1, 0, "a", from(0)) + in_variable(2, "x") +
+                 box(3, 0, "MOVE", input("EN", from(1)) + input("", from(2)), {"ENO", "Out1"}) +
+                 contact(4, 0, "b", from(3)) + coil(5, 0, "c", from(4)) +
+                 out_variable(6, 0, "y", from(3, "Out1"))) ==
+          "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN y := x; END_IF\n"
+          "c := _wire1 AND b;\nEND_PROGRAM\n");
+    const Read made =
+        read(program("LD", element("leftPowerRail", 0, 0, "") + contact(1, 0, "a", from(0)) +
+                               box(2, 0, "Elsewhere", input("In", from(1)), {"Out1"}) +
+                               coil(3, 0, "b", from(2)) + coil(4, 1, "c", from(2))));
+    CHECK(made.text.find("_wire1 := Elsewhere(a);\nb := _wire1;\nc := _wire1;\n") !=
           std::string::npos);
 }
 
