@@ -292,6 +292,42 @@ def check_binary_libraries():
     run("run", "binary.yaml", "--quiet")
 
 
+def check_addresses():
+    """An address is a UDINT in Automation Studio: programs keep it, reckon with it, give it to functions and refer to what is there."""
+    program = ('<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+               "<File>Variables.var</File><File>Main.st</File></Files></Program>\n")
+    write("Addresses/Logical/P/IEC.prg", program)
+    write("Addresses/Logical/Libraries/AsBrStr/binary.lby",
+          '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>AsBrStr.fun</File></Files></Library>\n')
+    write("Addresses/Logical/Libraries/AsBrStr/AsBrStr.fun",
+          "FUNCTION brsstrcpy : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tpSrc : UDINT;\n\tEND_VAR\nEND_FUNCTION\n"
+          "FUNCTION brsstrcat : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tpSrc : UDINT;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Addresses/Logical/Types.typ", "TYPE\n\tBelt_type : STRUCT\n\t\tspeed : REAL;\n\t\tcount : UINT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Addresses/Logical/Lib/IEC.lby", '<?xml version="1.0"?>\n<Library SubType="IEC" xmlns="http://br-automation.co.at/AS/Library"><Files>'
+          "<File>Lib.fun</File><File>count.st</File></Files></Library>\n")
+    write("Addresses/Logical/Lib/Lib.fun", "FUNCTION countOne : UINT\n\tVAR_INPUT\n\t\tpBelt : UDINT;\n\tEND_VAR\n\tVAR\n"
+          "\t\tbelt : REFERENCE TO Belt_type;\n\t\tedge : R_TRIG;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Addresses/Logical/Lib/count.st", "FUNCTION countOne\n\tIF pBelt = 0 THEN\n\t\tcountOne := 65535;\n\t\tRETURN;\n\tEND_IF\n"
+          "\tbelt ACCESS pBelt;\n\tedge(CLK := TRUE);\n\tIF edge.Q THEN belt.count := belt.count + LEN('a'); END_IF\n\n\tcountOne := belt.count;\nEND_FUNCTION\n")
+    write("Addresses/Logical/P/Variables.var", "VAR CONSTANT\n\tMOST : USINT := 3;\nEND_VAR\nVAR\n\tbelt : Belt_type;\n\tname : STRING[80];\n"
+          "\tn, none, bits : UINT;\n\taddress, third : UDINT;\n\trow : ARRAY[0..2] OF UINT := [MOST(7)];\n\tvalue : REFERENCE TO UINT;\n\tis_set, is_named : BOOL;\nEND_VAR\n")
+    main = ("PROGRAM _CYCLIC\n\taddress := ADR(belt);\n\tn := countOne(address);\n\tnone := countOne(0);\n\tbrsstrcpy(ADR(name), ADR('belt'));\n"
+            "\tbrsstrcat(ADR(name), ADR(' 1'));\n\tthird := ADR(row) + 2 * SIZEOF(row[0]);\n\tvalue ACCESS third;\n\tvalue := value + 1;\n"
+            "\tbits := 255;\n\tbits := BIT_SET(BIT_CLR(bits, 0), 8);\n\tis_set := BIT_TST(bits, 8) AND NOT BIT_TST(bits, 0);\n\tis_named := name = 'belt 1';\nEND_PROGRAM\n")
+    write("Addresses/Logical/P/Main.st", main)
+    assert run("check", "Addresses").splitlines()[0] == "ok  Addresses"
+    run("new", "addresses", "--from", "Addresses")
+    text = (work / "addresses.yaml").read_text()
+    write("addresses.yaml", text + "expect:\n  - {at: 95 ms, P.belt.count: 10}\n  - {at: 95 ms, P.n: 10}\n  - {at: 95 ms, P.none: 65535}\n"
+          "  - {at: 95 ms, 'P.row[0]': 7}\n  - {at: 95 ms, 'P.row[2]': 17}\n  - {at: 95 ms, P.is_named: true}\n  - {at: 95 ms, P.bits: 510}\n  - {at: 95 ms, P.is_set: true}\n")
+    run("run", "addresses.yaml", "--quiet")
+    for wrong, fault in (("value ACCESS third + 2;", "outside_of_variable"), ("value ACCESS third + 16#100000;", "no_reference"),
+                         ("value ACCESS third - third;", "no_reference")):
+        write("Addresses/Logical/P/Main.st", main.replace("value ACCESS third;", wrong))
+        said = run("run", "addresses.yaml", "--quiet", code=3)
+        assert fault in said and "Main.st:9" in said, said
+
+
 def check_editors_of_matiec():
     """Texts without quotes, and points of a bus, as the editors of Beremiz and OpenPLC keep them; CODESYS' lists of several kinds."""
     variables = ('<variable name="{}"{}><type><{}/></type>{}</variable>')
@@ -1100,6 +1136,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()
+    check_addresses()
     check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
