@@ -273,6 +273,7 @@ def check_binary_libraries():
         "AsBrStr": "FUNCTION brsmemset : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tvalue : USINT;\n\t\tlength : UDINT;\n\tEND_VAR\nEND_FUNCTION\n",
         "McAxis": "FUNCTION_BLOCK MC_Power\n\tVAR_INPUT\n\t\tAxis : REFERENCE TO McAxisType;\n\t\tEnable : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK MC_BR_Reset\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK FRM_write\n\tVAR_INPUT\n\t\tenable : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tstatus : UINT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK MC_BR_NotUsed\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n",
         "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n"}
     for name, text in declared.items():
@@ -281,14 +282,14 @@ def check_binary_libraries():
     write("Binary/Logical/Libraries/McBase/McBase.typ", "TYPE\n\tMcAxisType : STRUCT\n\t\tcontrolif : REFERENCE TO McInternal;\n\tEND_STRUCT;\nEND_TYPE\n")
     write("Binary/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
           "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
-    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\ti, n, filled : INT;\nEND_VAR\n")
+    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\tframe : FRM_write;\n\ti, n, filled : INT;\nEND_VAR\n")
     write("Binary/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := T#10ms);\n\tIF t.Q THEN n := n + 1; END_IF\n\ti := REAL_TO_INT(42.0) + LEN('abc');\n"
-          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\nEND_PROGRAM\n")
+          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\n\tframe(enable := TRUE);\nEND_PROGRAM\n")
     said = run("check", "Binary")
     assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
-    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset" in said, said
+    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset, FRM_write" in said, said
     run("new", "binary", "--from", "Binary")
-    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n")
+    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n  - {at: 95 ms, P.frame.status: 9999}\n")
     run("run", "binary.yaml", "--quiet")
 
 
@@ -326,6 +327,104 @@ def check_addresses():
         write("Addresses/Logical/P/Main.st", main.replace("value ACCESS third;", wrong))
         said = run("run", "addresses.yaml", "--quiet", code=3)
         assert fault in said and "Main.st:9" in said, said
+
+
+def check_instruction_lists():
+    """Bodies in IL of a text are read as those of PLCopen XML are, with places in the text."""
+    plant = """FUNCTION Twice : INT
+VAR_INPUT x : INT; END_VAR
+LD x
+MUL 2
+ST Twice
+END_FUNCTION
+
+FUNCTION_BLOCK Latch
+VAR_INPUT on, off : BOOL; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+(* on goes before *)
+LD off
+R q
+LD on
+S q
+END_FUNCTION_BLOCK
+
+PROGRAM Main
+VAR a : BOOL := TRUE; b, both, nested, above, late, passed, negated : BOOL; n, twice, most, jumped, rounds : INT; t : TON; latch : Latch; END_VAR
+      LD a (* what is
+              loaded *)
+      ANDN b
+      ST both
+      LD b
+      OR( a
+      ANDN( both
+      OR b
+      )
+      )
+      ST nested
+      LD 3
+      ADD 4
+      MUL 2
+      ST n
+      GT 13
+      ST above
+      STN negated
+      LD n
+      Twice
+      ST twice
+      LD n
+      MAX 20
+      ST most
+      CAL t(IN := a, PT := T#20ms)
+      LD t.Q
+      ST late
+      CAL latch(on := late,
+                off := b)
+      LD 0
+      ST jumped
+again: LD jumped
+      ADD 1
+      ST jumped
+      LT 5
+      JMPC again
+      LD rounds
+      ADD 1
+      ST rounds
+      LD late
+      JMPCN behind
+      LD TRUE
+      ST passed
+behind: LD a
+      RETC
+      LD 0
+      ST n
+END_PROGRAM
+
+CONFIGURATION Config0
+  RESOURCE Res0 ON PLC
+    TASK slow(INTERVAL := T#10ms, PRIORITY := 0);
+    PROGRAM line WITH slow : Main;
+  END_RESOURCE
+END_CONFIGURATION
+"""
+    path = write("lists/plant.st", plant)
+    assert run("check", path).startswith("ok"), run("check", path)
+    run("new", "of_lists", "--from", path)
+    write("of_lists.yaml", (work / "of_lists.yaml").read_text() + "expect:\n" + "".join(
+        f"  - {{at: {at} ms, Main.{name}: {value}}}\n" for at, name, value in (
+            (5, "both", "true"), (5, "nested", "false"), (5, "n", 14), (5, "above", "true"), (5, "negated", "false"), (5, "twice", 28), (5, "most", 20),
+            (5, "late", "false"), (5, "passed", "false"), (35, "late", "true"), (35, "passed", "true"), (35, "latch.q", "true"), (35, "jumped", 5),
+            (35, "rounds", 4))))
+    run("run", "of_lists.yaml", "--quiet")
+    write("lists/old.EXP", "PROGRAM Old\nVAR n, m : INT; END_VAR\nLD n\nADD 1\nST n\nGE 3\nJMPCN behind\nLD 7\nST m\nbehind:\nLD m\nEND_PROGRAM\n"
+          "ACTION Turn:\nLD n\nST m\nEND_ACTION\n\nPROGRAM Shorter\nLD TRUE\nJMPC away\nLD FALSE\naway:\nRET\nEND_PROGRAM\n")
+    run("new", "old_lists", "--from", "lists/old.EXP")
+    write("old_lists.yaml", (work / "old_lists.yaml").read_text() + "expect:\n  - {at: 15 ms, Old.m: 0}\n  - {at: 25 ms, Old.m: 7}\n")
+    run("run", "old_lists.yaml", "--quiet")
+    wrong = write("lists/wrong.st", plant.replace("ANDN b\n      ST both", "ANDN bb\n      ST both"))
+    said = run("check", wrong, code=2)
+    assert "wrong.st:22:12: error[L0904]: 'bb' is not declared" in said, said
+    wrong = write("lists/wrong.st", plant.replace("      )\n      )", "      )"))
+    assert "error[L0903]: this list has a '(' without a ')'" in run("check", wrong, code=2)
 
 
 def check_editors_of_matiec():
@@ -1137,6 +1236,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_older_forms()
     check_binary_libraries()
     check_addresses()
+    check_instruction_lists()
     check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
