@@ -414,6 +414,7 @@ def check_binary_libraries():
         "AsBrStr": "FUNCTION brsmemset : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tvalue : USINT;\n\t\tlength : UDINT;\n\tEND_VAR\nEND_FUNCTION\n",
         "McAxis": "FUNCTION_BLOCK MC_Power\n\tVAR_INPUT\n\t\tAxis : REFERENCE TO McAxisType;\n\t\tEnable : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK MC_BR_Reset\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
+                  "FUNCTION_BLOCK FRM_write\n\tVAR_INPUT\n\t\tenable : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tstatus : UINT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK MC_BR_NotUsed\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n",
         "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n"}
     for name, text in declared.items():
@@ -422,15 +423,149 @@ def check_binary_libraries():
     write("Binary/Logical/Libraries/McBase/McBase.typ", "TYPE\n\tMcAxisType : STRUCT\n\t\tcontrolif : REFERENCE TO McInternal;\n\tEND_STRUCT;\nEND_TYPE\n")
     write("Binary/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
           "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
-    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\ti, n, filled : INT;\nEND_VAR\n")
+    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\tframe : FRM_write;\n\ti, n, filled : INT;\nEND_VAR\n")
     write("Binary/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := T#10ms);\n\tIF t.Q THEN n := n + 1; END_IF\n\ti := REAL_TO_INT(42.0) + LEN('abc');\n"
-          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\nEND_PROGRAM\n")
+          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\n\tframe(enable := TRUE);\nEND_PROGRAM\n")
     said = run("check", "Binary")
     assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
-    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset" in said, said
+    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset, FRM_write" in said, said
     run("new", "binary", "--from", "Binary")
-    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n")
+    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n  - {at: 95 ms, P.frame.status: 9999}\n")
     run("run", "binary.yaml", "--quiet")
+
+
+def check_addresses():
+    """An address is a UDINT in Automation Studio: programs keep it, reckon with it, give it to functions and refer to what is there."""
+    program = ('<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+               "<File>Variables.var</File><File>Main.st</File></Files></Program>\n")
+    write("Addresses/Logical/P/IEC.prg", program)
+    write("Addresses/Logical/Libraries/AsBrStr/binary.lby",
+          '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>AsBrStr.fun</File></Files></Library>\n')
+    write("Addresses/Logical/Libraries/AsBrStr/AsBrStr.fun",
+          "FUNCTION brsstrcpy : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tpSrc : UDINT;\n\tEND_VAR\nEND_FUNCTION\n"
+          "FUNCTION brsstrcat : UDINT\n\tVAR_INPUT\n\t\tpDest : UDINT;\n\t\tpSrc : UDINT;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Addresses/Logical/Types.typ", "TYPE\n\tBelt_type : STRUCT\n\t\tspeed : REAL;\n\t\tcount : UINT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Addresses/Logical/Lib/IEC.lby", '<?xml version="1.0"?>\n<Library SubType="IEC" xmlns="http://br-automation.co.at/AS/Library"><Files>'
+          "<File>Lib.fun</File><File>count.st</File></Files></Library>\n")
+    write("Addresses/Logical/Lib/Lib.fun", "FUNCTION countOne : UINT\n\tVAR_INPUT\n\t\tpBelt : UDINT;\n\tEND_VAR\n\tVAR\n"
+          "\t\tbelt : REFERENCE TO Belt_type;\n\t\tedge : R_TRIG;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Addresses/Logical/Lib/count.st", "FUNCTION countOne\n\tIF pBelt = 0 THEN\n\t\tcountOne := 65535;\n\t\tRETURN;\n\tEND_IF\n"
+          "\tbelt ACCESS pBelt;\n\tedge(CLK := TRUE);\n\tIF edge.Q THEN belt.count := belt.count + LEN('a'); END_IF\n\n\tcountOne := belt.count;\nEND_FUNCTION\n")
+    write("Addresses/Logical/P/Variables.var", "VAR CONSTANT\n\tMOST : USINT := 3;\nEND_VAR\nVAR\n\tbelt : Belt_type;\n\tname : STRING[80];\n"
+          "\tn, none, bits : UINT;\n\taddress, third : UDINT;\n\trow : ARRAY[0..2] OF UINT := [MOST(7)];\n\tvalue : REFERENCE TO UINT;\n\tis_set, is_named : BOOL;\nEND_VAR\n")
+    main = ("PROGRAM _CYCLIC\n\taddress := ADR(belt);\n\tn := countOne(address);\n\tnone := countOne(0);\n\tbrsstrcpy(ADR(name), ADR('belt'));\n"
+            "\tbrsstrcat(ADR(name), ADR(' 1'));\n\tthird := ADR(row) + 2 * SIZEOF(row[0]);\n\tvalue ACCESS third;\n\tvalue := value + 1;\n"
+            "\tbits := 255;\n\tbits := BIT_SET(BIT_CLR(bits, 0), 8);\n\tis_set := BIT_TST(bits, 8) AND NOT BIT_TST(bits, 0);\n\tis_named := name = 'belt 1';\nEND_PROGRAM\n")
+    write("Addresses/Logical/P/Main.st", main)
+    assert run("check", "Addresses").splitlines()[0] == "ok  Addresses"
+    run("new", "addresses", "--from", "Addresses")
+    text = (work / "addresses.yaml").read_text()
+    write("addresses.yaml", text + "expect:\n  - {at: 95 ms, P.belt.count: 10}\n  - {at: 95 ms, P.n: 10}\n  - {at: 95 ms, P.none: 65535}\n"
+          "  - {at: 95 ms, 'P.row[0]': 7}\n  - {at: 95 ms, 'P.row[2]': 17}\n  - {at: 95 ms, P.is_named: true}\n  - {at: 95 ms, P.bits: 510}\n  - {at: 95 ms, P.is_set: true}\n")
+    run("run", "addresses.yaml", "--quiet")
+    for wrong, fault in (("value ACCESS third + 2;", "outside_of_variable"), ("value ACCESS third + 16#100000;", "no_reference"),
+                         ("value ACCESS third - third;", "no_reference")):
+        write("Addresses/Logical/P/Main.st", main.replace("value ACCESS third;", wrong))
+        said = run("run", "addresses.yaml", "--quiet", code=3)
+        assert fault in said and "Main.st:9" in said, said
+
+
+def check_instruction_lists():
+    """Bodies in IL of a text are read as those of PLCopen XML are, with places in the text."""
+    plant = """FUNCTION Twice : INT
+VAR_INPUT x : INT; END_VAR
+LD x
+MUL 2
+ST Twice
+END_FUNCTION
+
+FUNCTION_BLOCK Latch
+VAR_INPUT on, off : BOOL; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+(* on goes before *)
+LD off
+R q
+LD on
+S q
+END_FUNCTION_BLOCK
+
+PROGRAM Main
+VAR a : BOOL := TRUE; b, both, nested, above, late, passed, negated : BOOL; n, twice, most, jumped, rounds : INT; t : TON; latch : Latch; END_VAR
+      LD a (* what is
+              loaded *)
+      ANDN b
+      ST both
+      LD b
+      OR( a
+      ANDN( both
+      OR b
+      )
+      )
+      ST nested
+      LD 3
+      ADD 4
+      MUL 2
+      ST n
+      GT 13
+      ST above
+      STN negated
+      LD n
+      Twice
+      ST twice
+      LD n
+      MAX 20
+      ST most
+      CAL t(IN := a, PT := T#20ms)
+      LD t.Q
+      ST late
+      CAL latch(on := late,
+                off := b)
+      LD 0
+      ST jumped
+again: LD jumped
+      ADD 1
+      ST jumped
+      LT 5
+      JMPC again
+      LD rounds
+      ADD 1
+      ST rounds
+      LD late
+      JMPCN behind
+      LD TRUE
+      ST passed
+behind: LD a
+      RETC
+      LD 0
+      ST n
+END_PROGRAM
+
+CONFIGURATION Config0
+  RESOURCE Res0 ON PLC
+    TASK slow(INTERVAL := T#10ms, PRIORITY := 0);
+    PROGRAM line WITH slow : Main;
+  END_RESOURCE
+END_CONFIGURATION
+"""
+    path = write("lists/plant.st", plant)
+    assert run("check", path).startswith("ok"), run("check", path)
+    run("new", "of_lists", "--from", path)
+    write("of_lists.yaml", (work / "of_lists.yaml").read_text() + "expect:\n" + "".join(
+        f"  - {{at: {at} ms, Main.{name}: {value}}}\n" for at, name, value in (
+            (5, "both", "true"), (5, "nested", "false"), (5, "n", 14), (5, "above", "true"), (5, "negated", "false"), (5, "twice", 28), (5, "most", 20),
+            (5, "late", "false"), (5, "passed", "false"), (35, "late", "true"), (35, "passed", "true"), (35, "latch.q", "true"), (35, "jumped", 5),
+            (35, "rounds", 4))))
+    run("run", "of_lists.yaml", "--quiet")
+    write("lists/old.EXP", "PROGRAM Old\nVAR n, m : INT; END_VAR\nLD n\nADD 1\nST n\nGE 3\nJMPCN behind\nLD 7\nST m\nbehind:\nLD m\nEND_PROGRAM\n"
+          "ACTION Turn:\nLD n\nST m\nEND_ACTION\n\nPROGRAM Shorter\nLD TRUE\nJMPC away\nLD FALSE\naway:\nRET\nEND_PROGRAM\n")
+    run("new", "old_lists", "--from", "lists/old.EXP")
+    write("old_lists.yaml", (work / "old_lists.yaml").read_text() + "expect:\n  - {at: 15 ms, Old.m: 0}\n  - {at: 25 ms, Old.m: 7}\n")
+    run("run", "old_lists.yaml", "--quiet")
+    wrong = write("lists/wrong.st", plant.replace("ANDN b\n      ST both", "ANDN bb\n      ST both"))
+    said = run("check", wrong, code=2)
+    assert "wrong.st:22:12: error[L0904]: 'bb' is not declared" in said, said
+    wrong = write("lists/wrong.st", plant.replace("      )\n      )", "      )"))
+    assert "error[L0903]: this list has a '(' without a ')'" in run("check", wrong, code=2)
 
 
 def check_editors_of_matiec():
@@ -1258,6 +1393,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()
+    check_addresses()
+    check_instruction_lists()
     check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()

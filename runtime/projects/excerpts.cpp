@@ -48,6 +48,10 @@ Mark PlacedFile::mark(Part part) const {
     return mark;
 }
 
+void PlacedFile::copy(Excerpts& to, Part part) const {
+    to.copy(*this, part);
+}
+
 void Excerpts::copy(const PlacedFile& from, Part part) {
     if (part.begin == part.end) return;
     const auto copy_from = [&](std::size_t begin, bool is_copied) {

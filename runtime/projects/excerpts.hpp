@@ -13,11 +13,18 @@ struct Part {
     std::size_t begin = 0, end = 0;
 };
 
+class Excerpts;
+
 /// A file with places that are found quickly, whatever the length of its lines.
 class PlacedFile {
   public:
     PlacedFile() = default;
     explicit PlacedFile(std::shared_ptr<const SourceFile> file);
+    virtual ~PlacedFile() = default;
+    PlacedFile(const PlacedFile&) = default;
+    PlacedFile(PlacedFile&&) = default;
+    PlacedFile& operator=(const PlacedFile&) = default;
+    PlacedFile& operator=(PlacedFile&&) = default;
 
     const std::shared_ptr<const SourceFile>& file() const { return file_; }
     std::string_view text() const { return file_->text; }
@@ -25,6 +32,10 @@ class PlacedFile {
         return text().substr(part.begin, part.end - part.begin);
     }
     Mark mark(Part part) const;
+
+    /// What a part says.
+    virtual std::string plain(Part part) const { return std::string(text(part)); }
+    virtual void copy(Excerpts& to, Part part) const;
 
   private:
     std::shared_ptr<const SourceFile> file_;

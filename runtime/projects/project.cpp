@@ -9,6 +9,7 @@
 #include "runtime/projects/codesys_export.hpp"
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
+#include "runtime/projects/instruction_lists.hpp"
 #include "runtime/projects/openplc.hpp"
 #include "runtime/projects/organization_blocks.hpp"
 #include "runtime/projects/packages.hpp"
@@ -58,6 +59,7 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
         read_plc_configuration(to, source);
     }
     read_organization_blocks(to, source);
+    source = with_lists_as_statements(std::move(source), to.out);
     if (std::string form = form_in_library(path); !form.empty()) {
         SourceFile made = *source;
         made.read_as = std::move(form);

@@ -49,13 +49,13 @@ class XmlFile : public PlacedFile {
     std::vector<Part> texts(pugi::xml_node element) const;
 
     /// Without entities.
-    std::string plain(Part part) const;
+    std::string plain(Part part) const override;
     std::string plain(pugi::xml_attribute attribute) const { return plain(part(attribute)); }
     /// All text below, without entities and blanks around it.
     std::string plain(pugi::xml_node element) const;
 
     /// Copies a part, its entities as the characters that they are.
-    void copy(Excerpts& to, Part part) const;
+    void copy(Excerpts& to, Part part) const override;
     void copy(Excerpts& to, pugi::xml_attribute attribute) const { copy(to, part(attribute)); }
     /// All text below.
     void copy(Excerpts& to, pugi::xml_node element) const;

@@ -42,7 +42,9 @@ BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string&
             made.members.append(chart.members);
             made.statements.append(chart.statements);
         } else if (form == "IL") {
-            made.statements.append(list_text(context, language));
+            made.statements.append(
+                list_text({context.file, context.out, context.types, context.variables},
+                          context.file.texts(language)));
         } else {
             context.out.add(code::not_supported, place,
                             fmt::format("the body of '{}' is drawn ({}), which is not read", name,

@@ -14,8 +14,16 @@ struct BodyText {
 /// written or drawn in. `name` is what messages call its owner.
 BodyText body_text(BodyContext& context, pugi::xml_node body, const std::string& name);
 
-/// `<IL>`: instructions, whose result is an expression until it is stored.
-Excerpts list_text(BodyContext& context, pugi::xml_node list);
+/// What the instructions of a list are read with.
+struct ListContext {
+    const PlacedFile& file;
+    Diagnostics& out;
+    const NetworkTypes& types;
+    MadeVariables& variables;
+};
+
+/// Instructions (IL), whose result is an expression until it is stored.
+Excerpts list_text(const ListContext& context, const std::vector<Part>& list);
 
 /// `<SFC>`: steps and transitions; `pou` has those that are named.
 BodyText chart_text(BodyContext& context, pugi::xml_node chart, pugi::xml_node pou);

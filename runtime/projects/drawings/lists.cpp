@@ -156,7 +156,7 @@ class ListReader {
 /// The instructions as statements: what the current result is, as an expression.
 class ListText {
   public:
-    ListText(BodyContext& context, std::vector<Instruction> list)
+    ListText(const ListContext& context, std::vector<Instruction> list)
         : context_(context),
           file_(context.file),
           list_(std::move(list)),
@@ -196,8 +196,8 @@ class ListText {
         context_.out.add(code::not_supported, place_, std::move(why), std::move(help));
     }
 
-    BodyContext& context_;
-    const XmlFile& file_;
+    const ListContext& context_;
+    const PlacedFile& file_;
     std::vector<Instruction> list_;
     Jumps jumps_;
     Excerpts now_;
@@ -446,9 +446,9 @@ void ListText::come_to(const std::string& label) {
 
 }  // namespace
 
-Excerpts list_text(BodyContext& context, pugi::xml_node list) {
+Excerpts list_text(const ListContext& context, const std::vector<Part>& list) {
     std::vector<Instruction> all;
-    for (const Part part : context.file.texts(list)) {
+    for (const Part part : list) {
         std::vector<Instruction> read =
             ListReader(context.file.text(), part.begin, part.end).read();
         all.insert(all.end(), std::make_move_iterator(read.begin()),

@@ -20,6 +20,8 @@ struct Checked {
     bool refers_to_in_outs = false;  ///< to what a VAR_IN_OUT is given
     std::deque<std::string> names;   ///< of variables that no source declares
     bool dispatches = false;         ///< calls find routines by instances
+    /// Of the program's addresses that become numbers (`code/addresses.hpp`); null: none does.
+    Variable *numbered = nullptr, *numbers = nullptr;
     Image image = {};                ///< the process image
     std::unordered_set<const Source*> foreign_users;  ///< that have names of libraries not here
     /// Variables of IEC_TIMER, and what calls make them; null: not always the same.

@@ -113,7 +113,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
-    const bool mixes_signs = dialect.is_loose && narrows_mixed_signs(e, from, to);
+    const bool mixes_signs = takes_what_others_refuse(dialect) && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
         !changes_sign && !mixes_signs) {
         const bool is_unchecked = converts_unchecked(e, to);

@@ -4,6 +4,11 @@
 
 namespace lineshaft::st {
 
+/// CODESYS, MatIEC and B&R: an instance in a function, UINT of a UINT and an INT, `[COUNT(5)]`.
+inline bool takes_what_others_refuse(const Dialect& dialect) {
+    return dialect.is_loose || dialect.vendor == Vendor::automation_studio;
+}
+
 /// REAL.
 bool is_single(const Type& type);
 /// An integer without sign goes to a bit string of its width or a wider one.

@@ -243,7 +243,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
                        : fmt::format("first in line {}", it->second->name.place.mark().line));
         const bool is_kept = routine.has_instances() || routine.is_test() || is_static ||
                              section == Section::kept || section == Section::in_out;
-        if (type && type->is_instance() && !is_kept && !declared->name.place.dialect().is_loose)
+        if (type && type->is_instance() && !is_kept &&
+            !takes_what_others_refuse(declared->name.place.dialect()))
             c.fail(code::wrong_place, declared->name.place,
                    "a function keeps nothing from call to call, so it has no instances",
                    "pass the instance as VAR_IN_OUT");

@@ -9,6 +9,7 @@
 #include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/code/addresses.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -100,9 +101,28 @@ bool is_target(const Type& reference, const Type& given) {
     return derives || same_type(wanted, given);
 }
 
-/// A number of 32 bits or more is given where a POINTER points; there is no way back.
-bool holds_address(const Type& to) {
-    return (to.kind == Kind::integer || to.kind == Kind::bits) && to.bits >= 32 && !to.is_subrange;
+/// A global that the program's addresses are kept in, and their numbers.
+Variable& make_known(Checking& c, const Token& like, std::string_view name, const Type& element,
+                     std::uint32_t count) {
+    Type& array = c.make_type(Kind::array, {});
+    array.element = &element;
+    array.upper = std::int64_t{count} - 1;
+    Variable& made = c.make_variable(like, name, &array);
+    made.used = true;
+    keep_once(c, made);
+    return made;
+}
+
+/// A POINTER becomes a number, or a number one.
+const Type* convert_address(Checking& c, Expression*& e, const Type& to) {
+    if (!c.checked.numbered) {
+        c.checked.has_references = true;
+        c.checked.numbered =
+            &make_known(c, e->token, "ADR", pointer_to(c, bits_type(8)), numbered_places);
+        c.checked.numbers =
+            &make_known(c, e->token, "ADR.numbers", bits_type(64), slots_of_numbers);
+    }
+    return become_converted(c, e, to);
 }
 
 bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type& from) {
@@ -121,9 +141,14 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
                   std::move(help));
 }
 
-/// A REFERENCE TO is given a variable, or another reference.
+/// A REFERENCE TO is given a variable, or another reference; of B&R a number that is an address.
 bool bind(Checking& c, Expression*& e, const Type& to) {
     if (is_null(*e)) return become(c, e, to, {});
+    const Dialect& dialect = e->place.dialect();
+    const bool is_address =
+        dialect.references_take_addresses && holds_address(*e->type) && to.element &&
+        (dialect.vendor == Vendor::automation_studio || !same_type(*to.element, *e->type));
+    if (is_address) return convert_address(c, e, to);
     if (to.element && to.element->kind == Kind::handle) take_place_of_object(c, e);
     const Type& from = *e->type;
     const bool sees_bytes = from.is_pointer() && from.element && to.element &&
@@ -186,6 +211,11 @@ Expression* moved_by_index(Checking& c, const Expression& e) {
 }
 
 }  // namespace
+
+bool holds_address(const Type& type) {
+    const bool is_number = type.kind == Kind::integer || type.kind == Kind::bits;
+    return is_number && type.bits >= 32 && !type.is_subrange;
+}
 
 bool refer(Checking& c, Expression*& e, const Type& to) {
     if (e->kind == E::deref && e->operands[0]->type->element == e->type &&
@@ -398,10 +428,9 @@ static bool points_at_own_instance(const Expression& e, const Type& to) {
 bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     if (points_at_own_instance(*e, to) && !refer(c, e, pointer_to(c, *e->type))) return false;
     const Type& from = *e->type;
-    if (from.is_pointer() && &from != &null_type && holds_address(to)) {
-        e = make_converted(c, e, to);
-        return true;
-    }
+    if (from.is_pointer() && &from != &null_type && holds_address(to))
+        return convert_address(c, e, to);
+    if (to.is_pointer() && holds_address(from)) return convert_address(c, e, to);
     if (to.kind == Kind::interface && &from == &null_type) return become(c, e, to, {});
     if (!to.is_reference()) return refuse_target(c, *e, to, from);
     const bool is_this = to.is_pointer() && e->kind == E::self;

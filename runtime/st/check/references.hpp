@@ -15,6 +15,9 @@ const Type* resolve_reference(Checking& c, const TypeText& text);
 /// Of those that had to wait until all types are known.
 void resolve_targets(Checking& c);
 
+/// A number of 32 bits or more holds where a POINTER points, and is made one again.
+bool holds_address(const Type& type);
+
 /// `e`, a variable, becomes where it is, as a reference of that type; false for what is no
 /// variable, which was told.
 bool refer(Checking& c, Expression*& e, const Type& to);

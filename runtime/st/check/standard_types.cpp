@@ -316,8 +316,9 @@ const Type* check_places(Checking& c, Expression& call, const Type* expected) {
     if (!count.is_integer() && count.kind != Kind::any_bits)
         return c.fail(code::type_does_not_fit, places->place, "the number of places is an integer");
     if (!coerce(c, places, count.is_any() ? lint_type : count)) return nullptr;
-    if (given.kind == Kind::bits || given.kind == Kind::integer) return &given.plain();
-    return refuse(c, call, "a bit string", given, write_its_type);
+    if (given.kind != Kind::bits && given.kind != Kind::integer)
+        return refuse(c, call, "a bit string", given, write_its_type);
+    return call.standard->result == Generic::boolean ? &bool_type : &given.plain();
 }
 
 const Type* check_bits(Checking& c, Expression& call, const Type* expected) {
@@ -408,6 +409,10 @@ const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
         Expression*& value = call.arguments[i].value;
         if (f.parameter(i).type == Generic::pointer) {
             if (value->type->is_pointer()) continue;
+            if (holds_address(*value->type)) {
+                coerce(c, value, pointer_to(c, bits_type(8)));
+                continue;
+            }
             return c.fail(code::type_does_not_fit, value->place,
                           fmt::format("{} takes a POINTER, not {}", f.name, describe(*value->type)),
                           "write ADR(...) of a variable");

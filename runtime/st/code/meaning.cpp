@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/st/code/addresses.hpp"
 #include "runtime/st/code/bytes.hpp"
 #include "runtime/st/code/code.hpp"
 #include "runtime/st/types/value_text.hpp"
@@ -315,6 +316,17 @@ Fault Frames::find(const std::byte* reference, std::uint64_t next, Bytes& found)
         return told(Fault::call_has_ended, reference);
     found = {piece.shape, place(word(reference, 0)), bytes_from_first(reference)};
     return Fault::none;
+}
+
+bool Frames::number(const std::byte* reference, std::uint64_t known, std::uint64_t numbers) {
+    const auto found = number_of_reference(code, reference, {place(known), place(numbers)});
+    reached = found.value_or(0);
+    return found.has_value();
+}
+
+void Frames::find_number(std::byte* reference, std::uint64_t number, std::uint64_t known,
+                         std::uint64_t numbers) const {
+    find_reference(code, number, {place(known), place(numbers)}, reference);
 }
 
 Fault Frames::reach(const std::byte* reference, std::uint32_t shape, std::uint64_t next) {

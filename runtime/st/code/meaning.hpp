@@ -414,6 +414,11 @@ struct Frames {
 
     /// The variable of a reference and the byte that it is at.
     Fault find(const std::byte* reference, std::uint64_t next, Bytes& found) const;
+    /// The number of what a reference is to becomes `reached` (`addresses.hpp`), or what has that
+    /// number a reference. False: too many variables have one.
+    bool number(const std::byte* reference, std::uint64_t known, std::uint64_t numbers);
+    void find_number(std::byte* reference, std::uint64_t number, std::uint64_t known,
+                     std::uint64_t numbers) const;
     /// A fault of what is done with that, of which messages name the variable.
     Fault told(Fault fault, const std::byte* reference) const;
 

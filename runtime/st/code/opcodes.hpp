@@ -47,6 +47,8 @@
     OP(move_reference, move, "ttr-", if (!move_reference(at(a), at(b), I(c))) FAIL(out_of_range))    \
     OP(compare_references, integer, "wtt-", put(a, compare_references(at(b), at(c))))                \
     OP(reference_distance, integer, "wtt-", if (const auto n = reference_distance(at(b), at(c))) put(a, *n); else FAIL(out_of_range)) \
+    OP(number_of_reference, integer, "wtrr", if (!frames.number(at(b), U(c), U(d))) FAIL(out_of_range); put(a, frames.reached)) \
+    OP(reference_of_number, integer, "trrr", frames.find_number(at(a), U(b), U(c), U(d))) \
     OP(reach, move, "wtn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
     OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
     OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \

@@ -18,13 +18,12 @@ const ShapeMember* last_member(const Code& code, const Shape& of, std::uint64_t 
     return behind == members.begin() ? nullptr : &*std::prev(behind);
 }
 
-/// It is the shape, or that of a block which derives from it and begins as it does.
-bool is_of(const Code& code, std::uint32_t shape, std::uint32_t wanted) {
-    while (shape != wanted && code.shapes[shape].base != 0) shape = code.shapes[shape].base - 1;
-    return shape == wanted;
-}
-
 }  // namespace
+
+bool derives(const Code& code, std::uint32_t shape, std::uint32_t from) {
+    while (shape != from && code.shapes[shape].base != 0) shape = code.shapes[shape].base - 1;
+    return shape == from;
+}
 
 const ShapeMember* member_at(const Code& code, const Shape& structure, std::uint64_t bit) {
     return last_member(code, structure, &ShapeMember::bit, bit);
@@ -38,7 +37,7 @@ std::optional<std::uint64_t> slot_of(const Code& code, std::uint32_t shape, std:
     for (;;) {
         const Shape& here = code.shapes[shape];
         if (at >= here.bits && at != 0) return {};
-        if (is_of(code, shape, wanted)) return at == 0 ? std::optional(slot) : std::nullopt;
+        if (derives(code, shape, wanted)) return at == 0 ? std::optional(slot) : std::nullopt;
         if (here.kind == Shape::Kind::array) {
             if (here.stride == 0) return {};
             slot += at / here.stride * code.shapes[here.element].slots;

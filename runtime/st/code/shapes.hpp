@@ -38,6 +38,8 @@ struct ShapeMember {
     std::uint32_t shape = 0;
 };
 
+inline constexpr std::uint32_t reference_slots = 3;
+
 /// A variable that something refers to. A reference is three slots: the lasting address of the
 /// variable, 0 of NULL; the number of its Piece plus 1, times 2^32, plus how many bytes it is from
 /// the variable's first one (as std::int32_t); and the number of the call that has it, or 0.
@@ -51,6 +53,9 @@ struct Piece {
 };
 
 struct Code;
+
+/// It is that shape, or that of a block which derives from it and begins as it does.
+bool derives(const Code& code, std::uint32_t shape, std::uint32_t from);
 
 /// The last member that begins at that bit of the structure, or before; null: none does.
 const ShapeMember* member_at(const Code& code, const Shape& structure, std::uint64_t bit);

@@ -25,6 +25,26 @@ Slot emit_decode(Emission& e) {
     return e.result(Op::shl_64, e.constant(1), place);
 }
 
+/// Nothing, where there is no such bit.
+Slot the_bit(Emission& e) {
+    return e.emit(Op::shl_64, e.constant(1), e.value(1));
+}
+
+Slot emit_set_bit(Emission& e) {
+    const Slot in = e.value(0), all = e.emit(Op::or_bits, in, the_bit(e));
+    return e.result(of_type(Op::wrap_sint, e.type()), all);
+}
+
+Slot emit_clear_bit(Emission& e) {
+    const Slot in = e.value(0), others = e.emit(Op::not_bits, the_bit(e), 64);
+    return e.result(of_type(Op::wrap_sint, e.type()), e.emit(Op::and_bits, in, others));
+}
+
+Slot emit_test_bit(Emission& e) {
+    const Slot in = e.value(0), found = e.emit(Op::and_bits, in, the_bit(e));
+    return e.result(Op::ne_word, found, e.constant(0));
+}
+
 consteval StandardFunction shift(std::string_view signature, std::string_view doc, Op op) {
     return {signature, doc, Typing::places, emit_shift, op};
 }
@@ -41,6 +61,9 @@ constexpr StandardFunction bit_strings[] = {
     {"DECO(IN: ANY_INT): ANY_BIT", "the bit of number IN, from 0 on, and no other", Typing::bit_number, emit_decode},
     {"ENCO(IN: ANY_BIT): INT", "the number of the lowest bit that is set, from 0 on; of 0 it is 0",
      Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.value(0)); }},
+    {"BIT_SET(IN: ANY_WHOLE; POS: ANY_INT): ANY_WHOLE", "IN with bit POS set, from 0 on", Typing::places, emit_set_bit},
+    {"BIT_CLR(IN: ANY_WHOLE; POS: ANY_INT): ANY_WHOLE", "IN with bit POS cleared, from 0 on", Typing::places, emit_clear_bit},
+    {"BIT_TST(IN: ANY_WHOLE; POS: ANY_INT): BOOL", "bit POS of IN, from 0 on", Typing::places, emit_test_bit},
     {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
      Typing::statement, nullptr},
     {"SCATTER_BLK(IN: ANY_BIT; COUNT_IN: ANY_INT; OUT: BOOL)",

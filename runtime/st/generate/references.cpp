@@ -236,6 +236,25 @@ Slot view_of(Writing& w, const Expression& place, bool is_s7) {
     return made;
 }
 
+/// Where they are that code/addresses.hpp is about.
+std::pair<Slot, Slot> numbered_addresses(Writing& w) {
+    const auto where = [&](const Variable& variable) {
+        const Slot list = w.new_temporary();
+        w.put(Op::set_global, list, static_cast<Slot>(variable.global));
+        return address_of(w, part(w, {Mode::address, 0, list, 0}, variable));
+    };
+    const Slot known = where(*w.checked.numbered);
+    return {known, where(*w.checked.numbers)};
+}
+
+Slot reference_of_number(Writing& w, const Expression& number) {
+    const Slot from = value(w, number);
+    const auto [known, numbers] = numbered_addresses(w);
+    const Slot made = w.new_temporary(reference_slots);
+    w.put(Op::reference_of_number, made, from, known, numbers);
+    return made;
+}
+
 }  // namespace
 
 Slot reference(Writing& w, const Expression& e) {
@@ -245,6 +264,8 @@ Slot reference(Writing& w, const Expression& e) {
         case E::refer:
             return reference_to(w, *e.operands[0]);
         case E::converted:
+            if (e.operands[0]->type->is_number() || e.operands[0]->type->is_bits())
+                return reference_of_number(w, *e.operands[0]);
             return e.conversion.is_attempt ? attempted_reference(w, e)
                                            : reference(w, *e.operands[0]);
         case E::binary:
@@ -293,9 +314,10 @@ Slot reference_distance(Writing& w, const Expression& e, Slot wanted) {
 
 Slot address_number(Writing& w, const Expression& e) {
     const Slot from = reference(w, e);
-    const Slot whole = w.emit(Op::mul_lint, none, from, w.constant_slot(8));
-    const Slot bytes = w.emit(of_type(Op::wrap_sint, dint_type), none, from + 1);
-    return w.emit(Op::add_lint, none, whole, bytes);
+    const auto [known, numbers] = numbered_addresses(w);
+    const Slot made = w.new_temporary();
+    w.put(Op::number_of_reference, made, from, known, numbers);
+    return made;
 }
 
 std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7) {

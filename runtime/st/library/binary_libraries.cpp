@@ -93,6 +93,23 @@ bool is_empty(const Pou& unit) {
     return unit.body.empty() && !unit.chart && unit.methods.empty();
 }
 
+/// What B&R's blocks say that a controller does not have: ERR_NOTIMPLEMENTED. 0 would be success.
+void answer(Tree& tree, Pou& unit) {
+    for (const DeclarationBlock& block : unit.blocks)
+        for (Declaration* output : block.declarations) {
+            const bool is_status = block.section == Section::output && !output->initial &&
+                                   same_name(output->name.text, "status") && output->type &&
+                                   same_name(output->type->name.text, "UINT");
+            if (!is_status) continue;
+            Expression& number = tree.expressions.emplace_back();
+            number.token = output->name;
+            number.token.word = Word::integer;
+            number.token.text = "9999";
+            number.place = output->name.place;
+            output->initial = &number;
+        }
+}
+
 }  // namespace
 
 void leave_out_declared(Tree& tree, const Catalog& catalog) {
@@ -100,6 +117,9 @@ void leave_out_declared(Tree& tree, const Catalog& catalog) {
     const auto is_here = [&](const Token& name) { return is_binary(name) && known.has(name); };
     std::erase_if(tree.types, [&](const TypeDeclaration& type) { return is_here(type.name); });
     std::erase_if(tree.units, [&](const Pou* unit) { return is_here(unit->name); });
+    for (Pou* unit : tree.units)
+        if (unit->kind == PouKind::function_block && is_binary(unit->name) && is_empty(*unit))
+            answer(tree, *unit);
     for (DeclarationBlock& block : tree.globals)
         std::erase_if(block.declarations,
                       [&](const Declaration* variable) { return is_here(variable->name); });

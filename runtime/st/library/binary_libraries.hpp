@@ -14,7 +14,7 @@ inline constexpr std::string_view of_binary_library = ".binary", of_library_in_c
 
 /// Leaves out what binary libraries declare and what is here: functions of the standard, kinds of
 /// the catalogue but commands of axes, names of a library of the catalogue that is named as theirs.
-/// So these are meant by their names.
+/// So these are meant by their names. `status` of the other blocks is ERR_NOTIMPLEMENTED.
 void leave_out_declared(Tree& tree, const Catalog& catalog);
 
 /// A warning for each library with functions or blocks that the sources use and that have no body.

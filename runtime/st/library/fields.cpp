@@ -339,6 +339,7 @@ void write_fields(Library::Made& made, KindContext& kind, const Global& global) 
                 fields.write(*variable, 0, {}, Direction::local);
     }
     for (const Variable* member : global.type->members) {
+        if (member == made.checked.numbers) continue;
         const std::size_t before = kind.fields.size();
         fields.write_member(*member);
         keep(kind, before, member->retain);

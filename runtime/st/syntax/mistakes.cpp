@@ -174,9 +174,8 @@ bool refuse_other_language(Parsing& p) {
              "body in Structured Text");
     else if (at_instruction(p))
         fail(p, code::not_supported, p.here().place,
-             "this body is an instruction list, which is not read from a text",
-             "export the project as PLCopen XML, where it is read, or write the body in "
-             "Structured Text");
+             "this body is an instruction list, which is not read here",
+             "keep it in a file without TESTs, or write the body in Structured Text");
     else
         return false;
     skip_body(p);
