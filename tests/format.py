@@ -66,6 +66,12 @@ def main():
         "END_IF\nCASE x OF\n    1, 2: y := 1;\n    3:\n        x := 2;\nELSE\n    x := 3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n"
     assert in_style("\ufeffFUNCTION_BLOCK a\nVAR x:INT; END_VAR\nlab : x:=1;\nGOTO lab;\nCASE x OF\n1 : x:=2;\nEND_CASE;\nEND_FUNCTION_BLOCK\n", ".scl") == \
         "\ufeffFUNCTION_BLOCK a\nVAR x : INT; END_VAR\nlab: x := 1;\nGOTO lab;\nCASE x OF\n    1: x := 2;\nEND_CASE;\nEND_FUNCTION_BLOCK\n"
+    assert in_style("FUNCTION_BLOCK a\nTITLE = A title   \nVERSION : 0.1\nAUTHOR : me\nVAR x:INT; END_VAR\nBEGIN\nREGION   What, it does: x=1\nx:=1;\nREGION inner\t\nIF x>1 THEN\n"
+                    "x:=2;\nEND_IF;\nEND_REGION inner\nEND_REGION ;\nREGION\nEND_REGION\nEND_FUNCTION_BLOCK\n", ".scl") == \
+        "FUNCTION_BLOCK a\nTITLE = A title\nVERSION : 0.1\nAUTHOR : me\nVAR x : INT; END_VAR\nBEGIN\nREGION What, it does: x=1\n    x := 1;\n    REGION inner\n        IF x > 1 THEN\n" \
+        "            x := 2;\n        END_IF;\n    END_REGION inner\nEND_REGION ;\nREGION\nEND_REGION\nEND_FUNCTION_BLOCK\n"
+    assert in_style("PROGRAM Main\nVAR x:INT; END_VAR\nx:=x+1;\nIF x>3 THEN\nx:=0;\nEND_IF;\n") == \
+        "PROGRAM Main\nVAR x : INT; END_VAR\nx := x + 1;\nIF x > 3 THEN\n    x := 0;\nEND_IF;\n"
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "left_out.st"
         path.write_text("FUNCTION_BLOCK a\nVAR x : INT; END_VAR\n{IF defined(FOO)}\nx := 1;\n{END_IF}\nx := 2;\nEND_FUNCTION_BLOCK\n", encoding="utf-8")

@@ -427,6 +427,36 @@ def completion_offers_what_fits():
 
 
 @check
+def what_is_opened_broken_is_completed():
+    """As far as it can be read: what is half-written is left out, before and behind it."""
+    for broken in ("delay.\nIF wanted > THEN\n", "last := wanted +\nEND_IF\nla"):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "limiter.st")
+            path.write_text(BLOCK.replace("allowed := last;", f"allowed := last;\n{broken}"), encoding="utf-8")
+            client = Client(lineshaft, pathlib.Path(folder))
+            client.open(path)
+            assert client.diagnosed(path)
+            line = client.texts[str(path)].splitlines().index(broken.splitlines()[-1 if broken.endswith("la") else 0])
+            place = {"textDocument": {"uri": uri_of(path)}, "position": {"line": line, "character": len(broken.splitlines()[-1 if broken.endswith("la") else 0])}}
+            names = {item["label"].lower() for item in client.ask("textDocument/completion", place)["items"]}
+            assert ({"q", "et"} if broken.startswith("delay") else {"last", "wanted", "clamp"}) <= names, sorted(names)[:20]
+            assert client.end() == 0
+
+
+@check
+def units_are_those_of_the_block():
+    on = Folder()
+    text = on.client.texts[str(on.program)].replace("  second:", "  x: {type: axis, task: main, unit: deg, default_velocity: 1 deg/s}\n  second:") \
+        .replace("shown: second.allowed", "shown: x.velocity")
+    on.client.change(on.program, text)
+    assert on.client.diagnosed(on.program) == []
+    for where in ("x.velocity", "default_velocity"):
+        told = json.dumps(on.ask("hover", on.program, where, None, len(where) - 2))
+        assert "deg/s" in told and "{unit}" not in told, told
+    on.end()
+
+
+@check
 def outline_folding_lenses_and_quick_fixes():
     on = Folder()
     document = {"textDocument": {"uri": uri_of(on.block)}}

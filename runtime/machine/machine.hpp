@@ -14,6 +14,7 @@
 #include "runtime/model/wire.hpp"
 #include "runtime/names/signal.hpp"
 #include "runtime/names/task_settings.hpp"
+#include "runtime/st/types/types.hpp"
 
 namespace lineshaft {
 
@@ -162,19 +163,30 @@ struct Retained {
     std::byte* published = nullptr;  ///< may be the live one
 };
 
-/// A block that outlives the run with all that it remembers; parameters, inputs and references stay
-/// as the program has them.
-struct RetainedBlock {
-    std::size_t instance = 0;
-    std::string settings;  ///< Hash of what its memory rests on: version, kind, parameters
-};
-
 /// Where an instance stands.
 struct BlockPlace {
     std::string name;
     const BlockType* type = nullptr;
     std::byte* live = nullptr;
     std::byte* published = nullptr;  ///< may be the live one
+};
+
+/// A block that outlives the run with all that it remembers; parameters, inputs and references stay
+/// as the program has them.
+struct RetainedBlock {
+    std::size_t instance = 0;
+    BlockPlace place;
+    std::string settings;  ///< Hash of what its memory rests on: version, kind, parameters
+    bool is_part = false;  ///< of that instance, whose source gives it its inputs
+};
+
+/// A variable of Structured Text that outlives the run.
+struct RetainedVariable {
+    std::string name;
+    const st::Type* type = nullptr;
+    std::byte* live = nullptr;
+    std::byte* published = nullptr;  ///< may be the live one
+    std::size_t size = 0;            ///< [bytes]
 };
 
 /// A file that a program replays.
@@ -197,6 +209,7 @@ struct Machine {
     std::vector<ReplayedFile> replayed;
     std::vector<Force> forces;
     std::vector<Retained> retained;
+    std::vector<RetainedVariable> retained_variables;
     std::vector<RetainedBlock> retained_blocks;
     std::vector<DeviceCall> devices;
     std::vector<Trigger> triggers;
@@ -209,7 +222,9 @@ struct Machine {
     std::uint64_t seed = 1;
     bool continue_on_error = false;
 
-    bool retains_nothing() const { return retained.empty() && retained_blocks.empty(); }
+    bool retains_nothing() const {
+        return retained.empty() && retained_variables.empty() && retained_blocks.empty();
+    }
     const Signal* find(std::string_view name) const;
 
     /// From its time on in place of every other force of its signal.

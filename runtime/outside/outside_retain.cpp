@@ -5,7 +5,7 @@
 #include "runtime/outside/outside.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/text_hash.hpp"
-#include "runtime/st/library/library.hpp"
+#include "runtime/st/library/retained.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -40,7 +40,8 @@ void retain_block(Connecting& to, const Node& node) {
                         to.net.instance(number).described()),
             fmt::format("retain some of its outputs, such as {}.position", node.text));
     const auto i = static_cast<std::size_t>(number);
-    to.machine.retained_blocks.push_back({i, settings_of(to.machine.blocks[i])});
+    const BlockPlace& place = to.machine.blocks[i];
+    to.machine.retained_blocks.push_back({i, place, settings_of(place)});
 }
 
 void warn_of_what_is_not_kept(const Connecting& to, const Node& node, const Signal& signal) {
@@ -68,23 +69,30 @@ void retain_signal(Connecting& to, const Node& node) {
     to.machine.retained.push_back({std::move(kept->signal), kept->live, kept->published});
 }
 
-bool is_retained(const Machine& machine, std::size_t block, const std::byte* live) {
-    const auto& blocks = machine.retained_blocks;
+bool is_retained(const Machine& machine, const std::byte* live) {
     const auto& values = machine.retained;
-    return std::ranges::find(blocks, block, &RetainedBlock::instance) != blocks.end() ||
-           std::ranges::find(values, live, &Retained::live) != values.end();
+    return std::ranges::find(values, live, &Retained::live) != values.end();
 }
 
-/// What stands in VAR RETAIN of Structured Text, unless the program says it too.
+/// What Structured Text itself retains, unless the program says it too.
 void retain_variables(Connecting& to, std::size_t block) {
-    const Instance& instance = to.net.instances[block];
-    if (!instance.known()) return;
-    for (const std::string_view name : st::retained(*instance.type)) {
-        Node node;
-        node.text = fmt::format("{}.{}", instance.name, name);
-        auto kept = find_target(to, node);
-        if (kept && !is_retained(to.machine, block, kept->live))
-            to.machine.retained.push_back({std::move(kept->signal), kept->live, kept->published});
+    const auto& blocks = to.machine.retained_blocks;
+    if (!to.net.instances[block].known()) return;
+    const auto is_it = [&](const RetainedBlock& kept) {
+        return kept.instance == block && !kept.is_part;
+    };
+    if (std::ranges::any_of(blocks, is_it)) return;
+    const BlockPlace& whole = to.machine.blocks[block];
+    for (const st::RetainedVariable& variable : st::retained(*whole.type)) {
+        const BlockPlace part{.name = fmt::format("{}.{}", whole.name, variable.path),
+                              .type = variable.type->standard,
+                              .live = whole.live + variable.offset,
+                              .published = whole.published + variable.offset};
+        if (part.type)
+            to.machine.retained_blocks.push_back({block, part, settings_of(part), true});
+        else if (!is_retained(to.machine, part.live))
+            to.machine.retained_variables.push_back(
+                {part.name, variable.type, part.live, part.published, variable.size});
     }
 }
 

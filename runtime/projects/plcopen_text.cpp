@@ -107,8 +107,9 @@ std::vector<pugi::xml_node> PlcopenText::lists_of(pugi::xml_node section) {
 
 void PlcopenText::add_section(pugi::xml_node section, std::string_view word) {
     write(word, section);
-    for (const auto& [name, meaning] : {Term{"constant", " CONSTANT"}, Term{"retain", " RETAIN"},
-                                        Term{"nonretain", " NON_RETAIN"}})
+    for (const auto& [name, meaning] :
+         {Term{"constant", " CONSTANT"}, Term{"retain", " RETAIN"},
+          Term{"nonretain", " NON_RETAIN"}, Term{"persistent", " PERSISTENT"}})
         if (file_.plain(section.attribute(name.data())) == "true") write(meaning, section);
     write("\n", section);
     for (const pugi::xml_node variable : section.children("variable")) {

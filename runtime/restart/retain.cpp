@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -14,7 +15,10 @@
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/json_text.hpp"
 #include "runtime/source/text_hash.hpp"
+#include "runtime/source/utf8.hpp"
 #include "runtime/source/yaml.hpp"
+#include "runtime/st/library/retained.hpp"
+#include "runtime/st/types/elementary.hpp"
 #include "runtime/trace/output_file.hpp"
 
 namespace lineshaft {
@@ -75,9 +79,9 @@ std::string hexadecimal(const Bytes& bytes) {
 }
 
 /// Empty for what is not that many bytes.
-Bytes bytes_of(const Json& block, std::size_t size) {
-    if (!block.contains("state") || !block["state"].is_string()) return {};
-    const std::string text = block["state"];
+Bytes bytes_of(const Json& block, const char* key, std::size_t size) {
+    if (!block.contains(key) || !block[key].is_string()) return {};
+    const std::string text = block[key];
     if (text.size() != 2 * size) return {};
     Bytes bytes(size);
     for (std::size_t i = 0; i < size; ++i) {
@@ -89,17 +93,86 @@ Bytes bytes_of(const Json& block, std::size_t size) {
     return bytes;
 }
 
-Json json_of(const RetainedBlock& kept, const BlockPlace& block, std::int64_t now) {
+bool is_text(std::string_view text) {
+    while (!text.empty()) {
+        const Utf8Character first = first_character(text);
+        if (!first.valid) return false;
+        text.remove_prefix(first.bytes);
+    }
+    return true;
+}
+
+/// As it is written in the language, or as its bytes where JSON has nothing like it: of a number
+/// that is none, of a text that is no UTF-8, of a union, of a long list.
+Json json_of(const RetainedVariable& kept) {
+    const auto number = read<std::int64_t>(kept.live);
+    switch (kept.type->kind) {
+        case st::Type::Kind::boolean:
+            return number != 0;
+        case st::Type::Kind::real:
+            if (const auto value = read<double>(kept.live); std::isfinite(value)) return value;
+            break;
+        case st::Type::Kind::text: {
+            const std::string_view text(reinterpret_cast<const char*>(kept.live) + 8,
+                                        static_cast<std::size_t>(number));
+            if (is_text(text)) return text;
+            break;
+        }
+        case st::Type::Kind::array:
+        case st::Type::Kind::union_:
+            break;
+        default:
+            return number;
+    }
+    return {{"bytes", hexadecimal({kept.live, kept.live + kept.size})}};
+}
+
+/// Empty for what cannot be one.
+Bytes bytes_of(const Json& json, const RetainedVariable& kept) {
+    if (json.is_object()) return bytes_of(json, "bytes", kept.size);
+    Bytes bytes(kept.size);
+    const auto put = [&](auto value) { std::memcpy(bytes.data(), &value, sizeof value); };
+    switch (kept.type->kind) {
+        case st::Type::Kind::boolean:
+            if (!json.is_boolean()) return {};
+            put(std::int64_t{json.get<bool>()});
+            break;
+        case st::Type::Kind::real:
+            if (!json.is_number()) return {};
+            put(json.get<double>());
+            break;
+        case st::Type::Kind::text: {
+            if (!json.is_string()) return {};
+            const auto text = json.get<std::string>();
+            if (text.size() > kept.size - 8) return {};
+            put(std::int64_t(text.size()));
+            std::memcpy(bytes.data() + 8, text.data(), text.size());
+            break;
+        }
+        default:
+            if (!json.is_number_integer()) return {};
+            put(json.get<std::int64_t>());
+    }
+    return st::is_value(*kept.type, bytes.data()) ? bytes : Bytes();
+}
+
+Json json_of(const RetainedBlock& kept, std::int64_t now) {
+    const BlockPlace& block = kept.place;
     Bytes bytes(block.live, block.live + block.type->size);
     if (block.type->shift) block.type->shift(bytes.data(), -now, block.type->context);
     return {{"settings", kept.settings}, {"state", hexadecimal(bytes)}};
 }
 
 /// All but what the program says itself.
-void restore(const BlockPlace& block, const Bytes& state, KeptMemory& memory) {
+void restore(const RetainedBlock& kept, const Bytes& state, KeptMemory& memory) {
+    const BlockPlace& block = kept.place;
     Bytes bytes = state;
+    const auto is_kept = [&](Direction direction) {
+        return direction == Direction::output || direction == Direction::local ||
+               (direction == Direction::input && kept.is_part);
+    };
     for (const Field& field : block.type->fields)
-        if (field.direction != Direction::output && field.direction != Direction::local)
+        if (!is_kept(field.direction))
             std::memcpy(&bytes[field.offset], block.live + field.offset, size_of(field.type));
     memory.take(block, block.live, bytes.data());
     std::copy_n(block.live, block.type->size, block.published);
@@ -138,11 +211,25 @@ bool set_value(const Reading& reading, const Retained& kept) {
     return true;
 }
 
+bool set_variable(const Reading& reading, const RetainedVariable& kept) {
+    const Json* json = reading.find("values", kept.name);
+    if (!json) return false;
+    const Bytes bytes = bytes_of(*json, kept);
+    if (bytes.empty()) {
+        reading.fail(fmt::format("'{}' is {}, the file has {}", kept.name, st::describe(*kept.type),
+                                 json->dump()));
+        return false;
+    }
+    std::ranges::copy(bytes, kept.live);
+    std::ranges::copy(bytes, kept.published);
+    return true;
+}
+
 bool set_block(const Reading& reading, const RetainedBlock& kept) {
-    const BlockPlace& block = reading.machine.blocks[kept.instance];
+    const BlockPlace& block = kept.place;
     const Json* json = reading.find("blocks", block.name);
     if (!json) return false;
-    const Bytes bytes = bytes_of(*json, block.type->size);
+    const Bytes bytes = bytes_of(*json, "state", block.type->size);
     if (bytes.empty() || !json->contains("settings") || (*json)["settings"] != kept.settings) {
         reading.fail(
             fmt::format("'{}' ({}) was retained with other parameters, as another kind of "
@@ -150,7 +237,7 @@ bool set_block(const Reading& reading, const RetainedBlock& kept) {
                         block.name, block.type->name));
         return false;
     }
-    restore(block, bytes, reading.memory);
+    restore(kept, bytes, reading.memory);
     return true;
 }
 
@@ -223,10 +310,10 @@ std::string write_retained(const std::string& path, const Machine& machine, std:
     Json root{{"lineshaft_retain", retain_layout}, {"check", no_check}, {"values", Json::object()}};
     for (const Retained& kept : machine.retained)
         std::visit([&](auto v) { root["values"][kept.signal.name] = v; }, kept.signal.value());
-    for (const RetainedBlock& kept : machine.retained_blocks) {
-        const BlockPlace& block = machine.blocks[kept.instance];
-        root["blocks"][block.name] = json_of(kept, block, now);
-    }
+    for (const RetainedVariable& kept : machine.retained_variables)
+        root["values"][kept.name] = json_of(kept);
+    for (const RetainedBlock& kept : machine.retained_blocks)
+        root["blocks"][kept.place.name] = json_of(kept, now);
     std::string text = root.dump(2) + "\n";
     const std::size_t place = check_place(text);
     text.replace(place, no_check.size(), check_of(text, place));
@@ -252,6 +339,8 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     }
     int set = 0;
     for (const Retained& kept : machine.retained) set += set_value(reading, kept);
+    for (const RetainedVariable& kept : machine.retained_variables)
+        set += set_variable(reading, kept);
     for (const RetainedBlock& kept : machine.retained_blocks) set += set_block(reading, kept);
     mend_links(machine, memory);
     if (const std::string damaged = memory.damaged(); out.empty() && !damaged.empty())

@@ -90,6 +90,7 @@ void add_once(Checking& c, Routine& block, Place place, Block& to) {
         block.begun = &add_hidden(c, block.variables, like, "begun", bool_type);
         block.begun->of = block.pou;
         block.begun->section = block.has_instances() ? Section::local : Section::kept;
+        block.begun->retention = Retention::non_retain;
     }
     to.push_back(make_once(c, like, *block.begun, block.begins));
 }
@@ -335,6 +336,24 @@ void construct_one(Checking& c, const Expression& like, Routine& routine, const 
         construct(c, {like, routine.variables, routine.pou, phase}, type, values, part, to);
 }
 
+namespace {
+
+/// What a variable in VAR RETAIN begins with, once in all runs.
+Statement* make_once_in_all_runs(Checking& c, Routine& of, Statement* begins) {
+    const Variable& variable = *c.beginning.variable;
+    const bool is_global = variable.space == Space::global;
+    const Expression like = like_name(variable.name, begins->place);
+    Variable& flag =
+        add_hidden(c, is_global ? c.checked.variables : of.variables, like, "begun", bool_type);
+    flag.retention = Retention::retain;
+    flag.of = is_global ? nullptr : of.pou;
+    flag.section = of.has_instances() || is_global ? Section::local : Section::kept;
+    if (is_global) keep_once(c, flag);
+    return make_once(c, like, flag, {begins});
+}
+
+}  // namespace
+
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (c.beginning.member && c.beginning.path.empty() && !is_constant(*value)) {
         c.begins_of_members[c.beginning.member] = value;
@@ -345,7 +364,12 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
     if (type.is_alias()) s->op = Word::reference_assign;
     Routine& of = c.routine ? *c.routine : begin_of_globals(c, *value);
-    (is_of_call(of, *c.beginning.variable) ? of.call_begins : of.begins).push_back(s);
+    const Variable& variable = *c.beginning.variable;
+    const bool is_of_one = is_of_call(of, variable);
+    const bool is_kept = !type.is_reference() && variable.retention == Retention::retain &&
+                         (!is_of_one || variable.space == Space::global);
+    (is_of_one ? of.call_begins : of.begins)
+        .push_back(is_kept ? make_once_in_all_runs(c, of, s) : s);
     c.beginning.is_made = true;
     if (!is_constant(*value)) value = nothing(c, *value, type);
     return true;

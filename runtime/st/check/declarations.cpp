@@ -219,7 +219,7 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
             add(c, is_static ? c.checked.variables : routine.variables, *declared, type);
         variable->section = is_static ? Section::global : section;
         variable->constant = constant;
-        variable->retain = block.retain;
+        variable->retention = declared->retention;
         variable->of = routine.pou;
         variable->access = block.access;
         if (section == Section::in_out && !is_copied(routine, type))

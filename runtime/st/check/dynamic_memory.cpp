@@ -199,7 +199,9 @@ Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::
 bool may_begin_anew(const Checking& c, const Expression& call, const Type* type) {
     if (!type || type->kind != Kind::block || is_through_reference(call)) return false;
     const Routine& block = *type->routine;
-    const auto is_kept = [](const Variable& variable) { return variable.retain; };
+    const auto is_kept = [](const Variable& variable) {
+        return variable.retention == Retention::retain;
+    };
     return !block.methods.contains("fb_init") && &block != c.routine &&
            &block != c.routine->owner && std::ranges::none_of(block.variables, is_kept);
 }

@@ -79,7 +79,7 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     }
     variable->text = name.text;
     variable->constant = block.constant;
-    variable->retain = block.retain;
+    variable->retention = declared.retention;
     locate_in_image(c, *variable, declared);
     refuse_overlay(c, declared);
     variable->section = Section::global;
@@ -163,7 +163,7 @@ void declare_globals(Checking& c) {
                     refuse_overlay(c, *declared);
                     made.members.push_back(
                         add(c, c.checked.variables, *declared, resolve(c, *declared->type)));
-                    made.members.back()->retain = block.retain;
+                    made.members.back()->retention = declared->retention;
                 }
             type = &made;
         }

@@ -15,13 +15,6 @@ namespace {
 
 using Kind = Type::Kind;
 
-/// `Base.` of a PRIVATE variable whose name what extends its block has, too; else nothing.
-std::string of_base(const Routine& block, const Variable& variable) {
-    const auto it = block.names.find(variable.text);
-    const bool is_hidden = it != block.names.end() && it->second != &variable && variable.of;
-    return is_hidden ? fmt::format("{}.", variable.of->name.text) : std::string();
-}
-
 /// Writes down the fields of one kind.
 class FieldWriter {
   public:
@@ -138,7 +131,7 @@ class FieldWriter {
                 return;
             case Kind::text:
                 if (kind_.texts.size() < Library::most_parts)
-                    kind_.texts.push_back(made_.names.emplace_back(name));
+                    kind_.texts.push_back({made_.names.emplace_back(name), offset});
                 return;
             case Kind::handle:
                 write_handle(type, offset, name, direction, variable);
@@ -240,13 +233,6 @@ class FieldWriter {
     bool is_own_ = true;  ///< what is written is the kind's own, and given by nobody
 };
 
-/// The fields from `first` on are of a variable in VAR RETAIN, if it is one. Inputs come anew.
-void keep(KindContext& kind, std::size_t first, bool retain) {
-    for (; retain && first < kind.fields.size(); ++first)
-        if (kind.fields[first].direction >= Direction::output)
-            kind.retained.push_back(kind.fields[first].name);
-}
-
 /// Of all that `routine` runs, the blocks of the program that are named.
 void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
     if (!seen.insert(&routine).second) return;
@@ -255,6 +241,12 @@ void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::s
 }
 
 }  // namespace
+
+std::string of_base(const Routine& block, const Variable& variable) {
+    const auto it = block.names.find(variable.text);
+    const bool is_hidden = it != block.names.end() && it->second != &variable && variable.of;
+    return is_hidden ? fmt::format("{}.", variable.of->name.text) : std::string();
+}
 
 std::string text_of_comments(std::string_view written) {
     constexpr std::string_view marks = "(*/) \t\r\n";
@@ -282,9 +274,7 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
     fields.write_header(routine, objects);
     for (const Variable* declared : all_variables(routine)) {
         const Variable& variable = *declared;
-        const std::size_t before = kind.fields.size();
         fields.write(variable, 0, of_base(routine, variable), FieldWriter::direction_of(variable));
-        keep(kind, before, variable.retain);
         if (variable.space != Space::reference) continue;
         kind.references.push_back(variable.slot);
         fields.write_reference(variable);
@@ -304,6 +294,7 @@ void add_data_blocks(Library::Made& made, const Options& options) {
         const bool is_there = is_program(global) && std::ranges::any_of(made.kinds, is_its);
         if (global.object || is_there || global.name == image_name) continue;
         KindContext& kind = add_kind(made, global.name, *global.type, options);
+        if (global.pou) kind.retention = global.pou->retention;
         kind.doc = global.pou ? "DATA_BLOCK" : global.name == "statics" ? "VAR_STAT" : "VAR_GLOBAL";
         write_fields(made, kind, global);
     }
@@ -338,12 +329,8 @@ void write_fields(Library::Made& made, KindContext& kind, const Global& global) 
             if (variable->section != Section::temp)
                 fields.write(*variable, 0, {}, Direction::local);
     }
-    for (const Variable* member : global.type->members) {
-        if (member == made.checked.numbers) continue;
-        const std::size_t before = kind.fields.size();
-        fields.write_member(*member);
-        keep(kind, before, member->retain);
-    }
+    for (const Variable* member : global.type->members)
+        if (member != made.checked.numbers) fields.write_member(*member);
 }
 
 }  // namespace lineshaft::st

@@ -9,8 +9,8 @@ inline bool is_program(const Global& global) {
     return !global.pou && !global.object && global.type->kind == Type::Kind::block;
 }
 
-/// The fields of a PROGRAM or a FUNCTION_BLOCK, and of them those that are kept, checked or given
-/// by a call.
+/// The fields of a PROGRAM or a FUNCTION_BLOCK, and of them those that are checked or given by a
+/// call.
 void write_fields(Library::Made& made, KindContext& kind, const Routine& routine);
 /// Those of a data block.
 void write_fields(Library::Made& made, KindContext& kind, const Global& global);
@@ -31,6 +31,9 @@ struct KeptReference {
 /// All that a PROGRAM and the globals keep for themselves, in their blocks, structures and arrays.
 std::vector<KeptReference> kept_references(Library::Made& made, const Routine& program,
                                            const Catalog& standard);
+
+/// `Base.` of a PRIVATE variable whose name what extends its block has, too; else nothing.
+std::string of_base(const Routine& block, const Variable& variable);
 
 /// What comments say, in one line.
 std::string text_of_comments(std::string_view written);

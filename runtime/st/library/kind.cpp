@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/kept_state.hpp"
+#include "runtime/st/library/retained.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
@@ -127,10 +128,6 @@ void visit(const Type& type, std::size_t slot, const Value& value) {
     }
 }
 
-std::size_t slots_of(const Type& type) {
-    return type.kind == Kind::text ? 1 + (type.text_bytes() + 7U) / 8 : type.slots;
-}
-
 /// What a scan leaves to the next one, and the next call gives anew: temporaries, frames of
 /// functions and the addresses of VAR_IN_OUT, stays as in a new block.
 void take(std::byte* block, const std::byte* kept, const void* context) {
@@ -211,33 +208,17 @@ bool is_instance(const Type& interface, std::uint64_t address, const Context& co
 }
 
 bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {
-    const auto number = read<std::int64_t>(place);
     switch (type.kind) {
-        case Kind::boolean:
-            return number == 0 || number == 1;
-        case Kind::enumeration:
-            return number >= 0 && number < std::ssize(type.values);
-        case Kind::integer:
-        case Kind::bits:
-            if (type.bits == 64 && !type.in_a_run().is_subrange) return true;
-            return number >= smallest(type.in_a_run()) && number <= largest(type.in_a_run());
-        case Kind::real: {
-            const auto value = read<double>(place);
-            return type.bits == 64 || !std::isfinite(value) ||
-                   std::abs(value) <= double{std::numeric_limits<float>::max()};
-        }
         case Kind::handle:
-            return is_handle(type, number, machine.context);
+            return is_handle(type, read<std::int64_t>(place), machine.context);
         case Kind::interface:
-            return is_instance(type, static_cast<std::uint64_t>(number), machine.context);
-        case Kind::text:
-            return number >= 0 && number <= std::int64_t{type.text_bytes()};
+            return is_instance(type, read<std::uint64_t>(place), machine.context);
         case Kind::reference:
             return is_reference(place, machine);
         case Kind::standard:
             return lineshaft::is_valid(*type.standard, place, machine);
         default:
-            return true;
+            return is_value(type, place);
     }
 }
 
@@ -288,6 +269,33 @@ void make(std::byte* place, const void* context) {
 
 }  // namespace
 
+bool is_value(const Type& type, const std::byte* place) {
+    const auto number = read<std::int64_t>(place);
+    switch (type.kind) {
+        case Kind::boolean:
+            return number == 0 || number == 1;
+        case Kind::enumeration:
+            return number >= 0 && number < std::ssize(type.values);
+        case Kind::integer:
+        case Kind::bits:
+            if (type.bits == 64 && !type.in_a_run().is_subrange) return true;
+            return number >= smallest(type.in_a_run()) && number <= largest(type.in_a_run());
+        case Kind::real: {
+            const auto value = read<double>(place);
+            return type.bits == 64 || !std::isfinite(value) ||
+                   std::abs(value) <= double{std::numeric_limits<float>::max()};
+        }
+        case Kind::text:
+            return number >= 0 && number <= std::int64_t{type.text_bytes()};
+        default:
+            return true;
+    }
+}
+
+std::size_t slots_of(const Type& type) {
+    return type.kind == Kind::text ? 1 + (type.text_bytes() + 7U) / 8 : type.slots;
+}
+
 std::size_t element_slots(const Type& array) {
     const Type& element = *array.element;
     return element.kind == Kind::block ? element.routine->frame : element.slots;
@@ -337,17 +345,26 @@ const Library::Made* made_of(const BlockType& kind) {
     return static_cast<const Library::Made*>(kind.owner.get());
 }
 
-std::string_view find_text(const BlockType& kind, std::string_view name) {
+std::span<const TextVariable> text_variables(const BlockType& kind) {
     if (kind.scan_blocks != scan_blocks) return {};
-    const auto& texts = static_cast<const KindContext*>(kind.context)->texts;
-    const auto it = std::ranges::find_if(
-        texts, [&](std::string_view text) { return same_letters(text, name); });
-    return it == texts.end() ? std::string_view() : *it;
+    return static_cast<const KindContext*>(kind.context)->texts;
 }
 
-std::span<const std::string_view> retained(const BlockType& kind) {
-    if (kind.scan_blocks != scan_blocks) return {};
-    return static_cast<const KindContext*>(kind.context)->retained;
+std::string_view text_of(const TextVariable& variable, const std::byte* block) {
+    const std::byte* place = block + variable.offset;
+    return {reinterpret_cast<const char*>(place) + 8, read<std::uint64_t>(place)};
+}
+
+std::string_view find_text(const BlockType& kind, std::string_view name) {
+    const auto texts = text_variables(kind);
+    const auto it = std::ranges::find_if(
+        texts, [&](const TextVariable& text) { return same_letters(text.name, name); });
+    return it == texts.end() ? std::string_view() : it->name;
+}
+
+const KindContext* context_of(const BlockType& kind) {
+    if (kind.scan_blocks != scan_blocks) return nullptr;
+    return static_cast<const KindContext*>(kind.context);
 }
 
 std::optional<Mark> cut_text(const BlockType& kind, const std::byte* instance) {

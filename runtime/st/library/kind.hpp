@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "runtime/st/library/compiled.hpp"
+#include "runtime/st/library/text_variables.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -18,8 +19,8 @@ struct KindContext {
     Options options;
     std::string name, doc;
     std::vector<Field> fields;
-    std::vector<std::string_view> texts;
-    std::vector<std::string_view> retained;  ///< names of those in VAR RETAIN
+    std::vector<TextVariable> texts;
+    Retention retention = Retention::unsaid;  ///< of a data block: what its header says
     struct Check {
         std::uint32_t slot;
         const Type* type;
@@ -60,6 +61,11 @@ struct Library::Made : Compiled {
 };
 
 std::size_t element_slots(const Type& array);
+/// Of a value; of a text with room for all its characters.
+std::size_t slots_of(const Type& type);
+
+/// What the blocks of a kind of some library share; null of any other kind.
+const KindContext* context_of(const BlockType& kind);
 
 /// A kind of block without fields, whose instances are as the type's image.
 KindContext& add_kind(Library::Made& made, std::string name, const Type& type,

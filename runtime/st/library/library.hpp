@@ -92,10 +92,6 @@ class Library {
     std::vector<BlockType> kinds_;
 };
 
-/// Fields of a kind of some library that stand in VAR RETAIN (and all parts of theirs; texts are no
-/// fields). Of another kind none.
-std::span<const std::string_view> retained(const BlockType& kind);
-
 /// The variable of that name that is a STRING, as it is written; empty if there is none. Capital
 /// letters make no difference.
 std::string_view find_text(const BlockType& kind, std::string_view name);

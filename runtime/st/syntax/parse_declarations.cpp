@@ -11,17 +11,15 @@ bool stays(PouKind kind) {
     return kind == PouKind::program || kind == PouKind::function_block;
 }
 
-/// Var_Modifier : 'CONSTANT' | 'RETAIN' | 'NON_RETAIN' | 'PERSISTENT' | 'DB_SPECIFIC' | Access_Spec
+/// Var_Modifier : 'CONSTANT' | Retained | 'DB_SPECIFIC' | Access_Spec
 bool accept_modifier(Parsing& p, DeclarationBlock& block) {
     if (p.is_declared()) return false;
     if (p.accept(Word::constant_)) return block.constant = true;
-    if (p.accept(Word::retain_)) return block.retain = true;
     if (p.is(Word::name) && p.says("db_specific")) {
         p.take();
         return true;
     }
-    if (p.is(Word::name) && p.says("persistent")) return p.take(), block.retain = true;
-    return p.accept(Word::non_retain_) || accept_access(p, &block.access);
+    return accept_retention(p, block.retention) || accept_access(p, &block.access);
 }
 
 /// It begins its line, as `CONST` and `LABEL` are names elsewhere.
@@ -72,6 +70,20 @@ Token parse_location(Parsing& p, const std::vector<Token>& names) {
     return {};
 }
 
+/// Path_Decl : Name ( '.' Name ) + ':' Data_Type ';'
+/// CODESYS writes into its list of persistent variables the paths of those that blocks declare to
+/// be such. False, and nothing is taken: there is none.
+bool skip_path(Parsing& p) {
+    std::size_t names = 1;
+    while (p.is_name(2 * names - 2) && p.next(2 * names - 1).word == Word::dot) ++names;
+    if (names == 1 || !p.is_name(2 * names - 2) || p.next(2 * names - 1).word != Word::colon)
+        return false;
+    for (std::size_t i = 0; i < 2 * names; ++i) p.take();
+    parse_type(p);
+    end_statement(p);
+    return true;
+}
+
 /// Of a file's path or a line's number, which nobody need give.
 Expression* value_of_caller(Parsing& p, const TypeText& type) {
     const bool is_text = type.kind == TypeText::Kind::text || same_name(type.name.text, "string");
@@ -82,6 +94,15 @@ Expression* value_of_caller(Parsing& p, const TypeText& type) {
 }
 
 }  // namespace
+
+/// Retained : 'NON_RETAIN' | 'RETAIN' | 'PERSISTENT'
+bool accept_retention(Parsing& p, Retention& retention) {
+    const bool is_persistent = p.is(Word::name) && p.says("persistent");
+    if (!is_persistent && !p.is(Word::retain_) && !p.is(Word::non_retain_)) return false;
+    retention = p.is(Word::non_retain_) ? Retention::non_retain : Retention::retain;
+    p.take();
+    return true;
+}
 
 bool has_no_bodies(const Parsing& p) {
     return lower(p.source->file->path).ends_with(".fun");
@@ -115,6 +136,7 @@ void parse_sections(Parsing& p, Pou& pou, Word end) {
 }
 
 /// Var_Section : Section_Word Var_Modifier * Var_Decl * 'END_VAR' ';' ?
+///             | 'VAR_GLOBAL' 'RETAIN' ( Var_Decl | Path_Decl ) * 'END_VAR' ';' ?
 /// Section_Word : 'VAR' | 'VAR_STAT' | 'VAR_INPUT' | 'VAR_OUTPUT' | 'VAR_IN_OUT' | 'VAR_TEMP'
 ///              | 'VAR_GLOBAL' | 'VAR_EXTERNAL'
 DeclarationBlock parse_section(Parsing& p, Section section) {
@@ -123,10 +145,14 @@ DeclarationBlock parse_section(Parsing& p, Section section) {
     block.section = section;
     while (accept_modifier(p, block)) continue;
     p.section_left = false;
+    const bool has_paths = section == Section::global && block.retention == Retention::retain;
     while (!p.section_left && !is_end(p.here().word) && !p.is(Word::end_of_file) && !p.at_pou() &&
            !find_section(p.here().word))
-        if (!p.source->dialect.is_loose || !p.accept(Word::semicolon))
+        if ((!has_paths || !skip_path(p)) &&
+            (!p.source->dialect.is_loose || !p.accept(Word::semicolon)))
             parse_variables(p, block.declarations);
+    for (Declaration* declared : block.declarations)
+        if (block.retention != Retention::unsaid) declared->retention = block.retention;
     if (p.section_left) p.panic = false;
     if (!p.section_left) close(p, Word::end_var_, opener);
     p.accept(Word::semicolon);
@@ -172,9 +198,11 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
     const auto [unit, place] = unit_between(p, first, p.at);
     const std::string_view doc = comment_before(p, p.at, false);
     const bool is_path = has_attribute(p, first, "instance-path");
+    const bool is_retained = has_attribute(p, first, "tcretain");
     for (const Token& name : names)
         to.push_back(&p.tree.declarations.emplace_back(
-            Declaration{name, type, initial, at, edge, unit, place, doc, is_path}));
+            Declaration{name, type, initial, at, edge, unit, place, doc, is_path,
+                        is_retained ? Retention::retain : Retention::unsaid}));
 }
 
 }  // namespace lineshaft::st

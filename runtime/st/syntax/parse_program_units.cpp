@@ -65,7 +65,6 @@ bool at_attribute(const Cursor& p) {
 
 /// POU_Header : Using_Directive * Generic_Decl ? Pou_Bases Generic_Decl ? Attribute * Retained ?
 ///              Data_Block_Type ?
-/// Retained : 'NON_RETAIN' | 'RETAIN'
 /// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
 /// Only a DATA_BLOCK has a type here; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
@@ -76,7 +75,7 @@ void parse_header(Parsing& p, Pou& pou) {
     parse_bases(p, pou);
     parse_generic_constants(p, pou);
     parse_attributes(p);
-    p.accept(Word::non_retain_) || p.accept(Word::retain_);
+    accept_retention(p, pou.retention);
     if (pou.kind != PouKind::data_block) return;
     pou.base = std::exchange(pou.result, nullptr);
     const bool has_type =

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
@@ -95,11 +97,13 @@ class Style {
     }
     bool is_spaced(std::size_t i) const;
     bool is_label(std::size_t i) const;
+    bool is_attribute(std::size_t i) const;
     bool opens(const std::string& word) const;
     std::size_t depth() const;
     std::size_t indent_of(std::size_t i);
     void take(std::size_t i);
     void close(const std::string& word);
+    std::string_view title_behind(std::size_t i) const;
     void refuse(std::size_t i, Diagnostics& wrong) const;
 
     std::string_view text_;
@@ -150,7 +154,16 @@ bool Style::is_label(std::size_t i) const {
 
 bool Style::opens(const std::string& word) const {
     if (word.starts_with("VAR")) return word == "VAR" || word.starts_with("VAR_");
+    if (word == "PROGRAM" || word == "FUNCTION" || word == "FUNCTION_BLOCK") return true;
     return std::ranges::find(closed_, word) != closed_.end();
+}
+
+/// `VERSION : 0.1`, `AUTHOR : me` and `TITLE = text` of SCL, which their line ends.
+bool Style::is_attribute(std::size_t i) const {
+    constexpr std::string_view words[] = {"AUTHOR", "FAMILY", "NAME"};
+    const bool has_colon = i + 1 < pieces_.size() && pieces_[i + 1].is(Word::colon) && !in_case();
+    return pieces_[i].is(Word::version_) || !title_behind(i).empty() ||
+           (has_colon && std::ranges::find(words, pieces_[i].word()) != std::end(words));
 }
 
 bool is_unindented(const std::string& word) {
@@ -219,6 +232,10 @@ void Style::take(std::size_t i) {
         begins_ = word == "REPEAT";
         return;
     }
+    if (begins_ && is_attribute(i)) {
+        is_header_ = true;
+        return;
+    }
     if (begins_ && word == "ELSE" && in_case()) open_.back().has_label = false;
     if (ends_label(i)) {
         if (in_case()) open_.back().has_label = true;
@@ -231,10 +248,29 @@ void Style::take(std::size_t i) {
         (piece.is(Word::of_) && in_case());
 }
 
+/// What is no token up to the end of the line: of a REGION or a TITLE, with a blank before it.
+std::string_view Style::title_behind(std::size_t i) const {
+    const std::size_t next = i + 1 < pieces_.size() ? pieces_[i + 1].place.begin : text_.size();
+    std::string_view title = text_.substr(pieces_[i].place.end, next - pieces_[i].place.end);
+    const std::size_t line = title.find('\n');
+    if (!pieces_[i].token || (line == title.npos && next < text_.size())) return {};
+    title = title.substr(0, line);
+    title = title.substr(0, title.find_last_not_of(" \r\t") + 1);
+    const std::size_t begin = std::min(title.find_first_not_of(" \t"), title.size());
+    return title.substr(begin > 0 && begin < title.size() ? begin - 1 : begin);
+}
+
 std::optional<std::string> Style::write(Diagnostics& wrong) {
     std::string out;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         std::string gap(between(i));
+        if (i > 0) {
+            const std::string_view title = title_behind(i - 1);
+            out += title;
+            if (!title.empty())
+                gap.erase(0, static_cast<std::size_t>(title.data() + title.size() - text_.data()) -
+                                 pieces_[i - 1].place.end);
+        }
         const auto lines = std::ranges::count(gap, '\n');
         std::string left = gap;  // what is no token, as the '#' behind a prefix
         std::erase_if(left, [](char c) {
@@ -258,7 +294,13 @@ std::optional<std::string> Style::write(Diagnostics& wrong) {
         out += pieces_[i].text();
         take(i);
     }
-    const std::size_t last = pieces_.empty() ? 0 : pieces_.back().place.end;
+    const std::string_view title =
+        pieces_.empty() ? std::string_view() : title_behind(pieces_.size() - 1);
+    out += title;
+    const std::size_t last =
+        pieces_.empty() ? 0
+        : title.empty() ? pieces_.back().place.end
+                        : static_cast<std::size_t>(title.data() - text_.data()) + title.size();
     std::string rest(text_.substr(last));
     rest.erase(0, std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
     if (!rest.empty()) return {};
@@ -269,8 +311,12 @@ std::optional<std::string> Style::write(Diagnostics& wrong) {
 void Style::refuse(std::size_t i, Diagnostics& wrong) const {
     const std::uint32_t end = i == 0 ? 0 : pieces_[i - 1].place.end;
     const auto begin = static_cast<std::uint32_t>(text_.find_first_not_of(" \t\r\n\f", end));
+    const bool has_condition = std::ranges::any_of(pieces_, [](const Piece& piece) {
+        return !piece.token && upper(piece.text()).starts_with("{IF");
+    });
     wrong.add(code::character_of_no_word, Place{pieces_[i].place.source, begin, begin + 1}.mark(),
-              "what stands here is left out by its {IF ...}, and is not brought into the style");
+              fmt::format("what stands here is {}, and is not brought into the style",
+                          has_condition ? "left out by its {IF ...}" : "not read"));
 }
 
 /// Nothing but blanks and ends of lines differs.

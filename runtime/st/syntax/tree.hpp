@@ -212,6 +212,9 @@ struct TypeText {
     bool is_strict = false;             ///< `{attribute 'strict'}`: it takes its own values alone
 };
 
+/// Whether a variable outlives the run. Unsaid: as the instance that it is in.
+enum class Retention : std::uint8_t { unsaid, retain, non_retain };
+
 /// `a, b : INT := 5;` has one for each name.
 struct Declaration {
     Token name = {};
@@ -223,6 +226,7 @@ struct Declaration {
     Place unit_place = {};
     std::string_view doc = {};  ///< the comments behind it
     bool is_path = false;       ///< `{attribute 'instance-path'}`: a text that names its instance
+    Retention retention = Retention::unsaid;
 };
 
 enum class Section : std::uint8_t {
@@ -243,7 +247,8 @@ enum class Access : std::uint8_t { unsaid, public_, protected_, internal_, priva
 
 struct DeclarationBlock {
     Section section = Section::local;
-    bool constant = false, retain = false;
+    bool constant = false;
+    Retention retention = Retention::unsaid;
     Access access = Access::unsaid;
     bool is_lost = false;            ///< not understood
     std::string_view list = {};      ///< of VAR_GLOBAL: its file's name, without the ending, or
@@ -282,6 +287,7 @@ struct Pou {
     bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;    ///< not understood
     bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
+    Retention retention = Retention::unsaid;  ///< of a data block: of what its sections leave open
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
     Chart* chart = nullptr;  ///< instead of a body

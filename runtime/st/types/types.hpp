@@ -170,7 +170,8 @@ struct Variable {
     Token name = {};
     const Type* type = nullptr;
     Section section = Section::local;
-    bool constant = false, retain = false;
+    bool constant = false;
+    Retention retention = Retention::unsaid;
     Space space = Space::frame;
     std::uint32_t slot = 0;  ///< in the frame, the structure or the data block
     std::uint32_t byte = 0;  ///< of a boolean of a kind of the catalogue, in its memory

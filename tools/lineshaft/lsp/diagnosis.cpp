@@ -38,6 +38,7 @@ Json to_json(const Session& session, const Diagnostic& d) {
 void Diagnosis::change(const std::string& path) {
     session_.project.change(path);
     session_.meanings.clear();
+    session_.mended_meanings.clear();
     std::set<std::string> wanted;
     std::deque<std::string> first;
     for (const auto& [open, document] : session_.documents.all())

@@ -9,6 +9,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/fields.hpp"
+#include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
 
@@ -37,6 +38,84 @@ std::string about_variable(const st::Variable& v) {
     if (!v.unit.empty()) text += fmt::format(", unit {}", v.unit);
     if (!v.doc.empty()) text += "\n\n" + st::text_of_comments(v.doc);
     return text;
+}
+
+using Sources = std::vector<std::shared_ptr<const SourceFile>>;
+
+bool is_of_tests(const std::string& root, const Sources& sources) {
+    return is_structured_text(root) && !sources.empty() && st::is_test_file(sources.back());
+}
+
+std::shared_ptr<Meaning> make_meaning(const std::string& root, Sources sources) {
+    auto made = std::make_shared<Meaning>();
+    made->compiled.sources = std::move(sources);
+    const Sources& all = made->compiled.sources;
+    made->uses = st::understand(made->compiled, standard_blocks(),
+                                is_of_tests(root, all) ? all.back().get() : nullptr);
+    return made;
+}
+
+/// Where the lines begin that mistakes of a text stand in; empty: all of it can be read.
+std::vector<std::size_t> mistakes_of(const SourceFile& file, st::SourceKind kind) {
+    Diagnostics out;
+    st::Tree tree;
+    const auto source = std::make_shared<const SourceFile>(file);
+    st::parse(st::read_tokens(source, out, kind), tree, out);
+    std::vector<std::size_t> places;
+    const Text lines(file.text);
+    for (const Diagnostic& mistake : out.list()) {
+        if (mistake.mark.file != source) continue;
+        const std::size_t at = lines.bytes_of(mistake.mark).first;
+        places.push_back(at == 0 ? 0 : file.text.rfind('\n', at - 1) + 1);
+    }
+    return places;
+}
+
+/// The last line that has something, before the one that begins at `line`; else that.
+std::size_t line_before(std::string_view text, std::size_t line) {
+    const std::size_t last = text.substr(0, line).find_last_not_of(" \t\r\n");
+    if (last == text.npos) return line;
+    const std::size_t begin = text.rfind('\n', last);
+    return begin == text.npos ? 0 : begin + 1;
+}
+
+void make_blank(std::string& text, std::size_t line) {
+    for (; line < text.size() && text[line] != '\n'; ++line)
+        if (text[line] != '\r') text[line] = ' ';
+}
+
+/// With blanks for the lines that cannot be read, so that all other places stay: of what is half
+/// written the line that is told, or the one before it.
+std::shared_ptr<const SourceFile> mended(const std::shared_ptr<const SourceFile>& file,
+                                         st::SourceKind kind) {
+    constexpr int most_lines = 20;
+    SourceFile made = *file;
+    auto mistakes = mistakes_of(made, kind);
+    for (int i = 0; i < most_lines && !mistakes.empty(); ++i) {
+        SourceFile best = made;
+        std::vector<std::size_t> left;
+        for (const std::size_t line : {line_before(made.text, mistakes[0]), mistakes[0]}) {
+            SourceFile without = made;
+            make_blank(without.text, line);
+            auto others = mistakes_of(without, kind);
+            if (line == mistakes[0] || others.size() < mistakes.size()) {
+                best = std::move(without);
+                left = std::move(others);
+                if (left.size() < mistakes.size()) break;
+            }
+        }
+        made = std::move(best);
+        mistakes = std::move(left);
+    }
+    return std::make_shared<const SourceFile>(std::move(made));
+}
+
+Sources mended_sources(const std::string& root, Sources sources) {
+    const bool is_tests = is_of_tests(root, sources);
+    for (auto& source : sources)
+        source = mended(source, is_tests && source == sources.back() ? st::SourceKind::tests
+                                                                     : st::SourceKind::program);
+    return sources;
 }
 
 }  // namespace
@@ -102,7 +181,8 @@ const st::Routine* Meaning::routine_at(const Asked& where) const {
     const std::string& path = where.path;
     std::size_t offset = where.offset;
     for (const auto& source : compiled.sources)  // which may be older: as far as it is the same
-        if (std::filesystem::path(source->path).lexically_normal().string() == path) {
+        if (std::filesystem::path(source->path).lexically_normal().string() == path &&
+            source->text.size() != where.text.size()) {
             const auto changed = std::ranges::mismatch(source->text, where.text).in1;
             offset = std::min(offset, static_cast<std::size_t>(changed - source->text.begin()));
         }
@@ -125,19 +205,16 @@ const st::Routine* Meaning::find_block(std::string_view name) const {
 std::shared_ptr<const Meaning> whole_meaning_of(Session& session, const std::string& root) {
     const auto now = meaning_of(session, root);
     const auto last = session.whole_meanings.find(root);
-    return last == session.whole_meanings.end() ? now : last->second;
+    if (last != session.whole_meanings.end()) return last->second;
+    auto& mended = session.mended_meanings[root];
+    if (!mended) mended = make_meaning(root, mended_sources(root, now->compiled.sources));
+    return mended;
 }
 
 std::shared_ptr<const Meaning> meaning_of(Session& session, const std::string& root) {
     if (const auto it = session.meanings.find(root); it != session.meanings.end())
         return it->second;
-    auto made = std::make_shared<Meaning>();
-    made->compiled.sources = session.project.sources_of(root);
-    const auto& sources = made->compiled.sources;
-    const bool is_tests =
-        is_structured_text(root) && !sources.empty() && st::is_test_file(sources.back());
-    made->uses = st::understand(made->compiled, standard_blocks(),
-                                is_tests ? sources.back().get() : nullptr);
+    const auto made = make_meaning(root, session.project.sources_of(root));
     session.meanings[root] = made;
     if (made->compiled.tree.lost.empty()) session.whole_meanings[root] = made;
     return made;

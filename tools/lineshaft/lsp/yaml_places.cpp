@@ -158,10 +158,22 @@ std::string type_of(const std::string& text, const std::string& block) {
     return {};
 }
 
-std::string about_field(const Field& field) {
+/// `mm/s` of `{unit}/s`, as the block of that name has it; `unit/s` where it is not known.
+std::string unit_of(const Session& session, const std::string& path, std::string_view block,
+                    const BlockType& kind, const Field& field) {
+    if (const auto it = session.programs.find(path); it != session.programs.end())
+        for (const Instance& instance : it->second->net.instances)
+            if (instance.name == block && instance.known() && instance.type->name == kind.name)
+                return it->second->net.unit_of(instance, field.unit).text;
+    std::string text(field.unit);
+    std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
+    return text;
+}
+
+std::string about_field(const Field& field, const std::string& unit) {
     std::string text = fmt::format("**{}**: {}", field.name, name_of(field.direction));
     if (field.direction == Direction::in_out) text += fmt::format(" to {}", field.refers);
-    if (!field.unit.empty()) text += fmt::format(", unit {}", field.unit);
+    if (!unit.empty()) text += fmt::format(", unit {}", unit);
     for (std::size_t i = 0; i < field.names.size(); ++i)
         text += fmt::format("{}{}", i == 0 ? ", one of " : ", ", field.names[i]);
     return fmt::format("{}\n\n{}", text, field.doc);
@@ -268,8 +280,9 @@ void add_keys(const Session& session, const Asked& where, const std::vector<std:
                 if (field.direction != Direction::output && field.direction != Direction::local &&
                     field.global.empty())
                     to.add(field.name, of_field,
-                           fmt::format("{} {}", name_of(field.direction), field.unit), field.doc,
-                           std::string(field.name) + ": ");
+                           fmt::format("{} {}", name_of(field.direction),
+                                       unit_of(session, where.path, keys[1], *kind, field)),
+                           field.doc, std::string(field.name) + ": ");
     }
 }
 
@@ -286,7 +299,9 @@ void add_signals(const Session& session, const std::string& path, const std::str
             if (field.direction == Direction::output || field.direction == Direction::local)
                 to.add(owner.empty() ? fmt::format("{}.{}", instance.name, field.name)
                                      : std::string(field.name),
-                       of_variable, fmt::format("{} {}", instance.type->name, field.unit),
+                       of_variable,
+                       fmt::format("{} {}", instance.type->name,
+                                   unit_of(session, path, instance.name, *instance.type, field)),
                        field.doc);
     }
 }
@@ -332,7 +347,8 @@ void add_values(const Session& session, const Asked& where, const YamlPlace& pla
     const Field* field = kind ? kind->find_settable(key) : nullptr;
     if (!field) return;
     for (const std::string_view name : field->names) to.add(name, of_enum, "", "");
-    if (!field->unit.empty()) add_units(field->unit, to);
+    if (!field->unit.empty())
+        add_units(unit_of(session, where.path, place.keys[1], *kind, *field), to);
     if (field->direction == Direction::input) add_signals(session, where.path, owner, to);
     if (field->direction == Direction::in_out && known != session.programs.end())
         for (const Instance& instance : known->second->net.instances)
@@ -425,7 +441,8 @@ std::string about_yaml(const Session& session, const Asked& where) {
     if (const BlockType* kind = find_kind(session, where.path, type); kind && !name->port.empty()) {
         const Field* field =
             name->is_key ? kind->find_settable(name->port) : kind->find_readable(name->port);
-        if (field) return about_field(*field);
+        if (field)
+            return about_field(*field, unit_of(session, where.path, name->owner, *kind, *field));
     }
     const Key* said = nullptr;
     if (name->is_key && !keys.empty()) shapes_at(where.text, keys, &said);
