@@ -353,8 +353,7 @@ static void name_instance_of_block(Checking& c, Expression*& e) {
     if (!routine || !routine->has_instances()) return;
     Expression* instance = make_name(c, *callee.operands[0], callee.token.text);
     const Variable* found = find_variable(c, instance->token);
-    if (found && found->type && found->type->kind == Kind::block &&
-        found->type->routine == routine)
+    if (found && found->type && found->type->kind == Kind::block && found->type->routine == routine)
         e = make_call(c, *e, instance, e->arguments);
 }
 

@@ -35,7 +35,8 @@ bool is_open(const LibraryFile& file);
 /// Whose names sources in SCL have without it, as they have the instructions of STEP 7.
 inline constexpr std::string_view siemens_motion = "Siemens.Simatic.S71500.MotionControl.Native";
 
-/// What a library is called here: newer editions of SIMATIC AX name its motion without a controller.
+/// What a library is called here: newer editions of SIMATIC AX name its motion without a
+/// controller.
 constexpr std::string_view library_called(std::string_view name) {
     return name == "Siemens.Simatic.MotionControl.Native" ? siemens_motion : name;
 }
