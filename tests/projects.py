@@ -204,6 +204,8 @@ def check_exported_tasks():
     programs = "".join(f"PROGRAM {name}\nVAR n : INT; END_VAR\nn := n + 1; {more}\nEND_PROGRAM\n" for name, more in
                        (("PLC_PRG", "Helper(); lamp := start; speed := level;"), ("Helper", ""), ("Fast", ""), ("Late", "")))
     write("exported/PRG.EXP", programs + "VAR_GLOBAL\n  go : BOOL;\nEND_VAR\n")
+    whole = (work / "exported/PRG.EXP").read_text() + "\nFUNCTION Other : INT\nOther := 1;\nEND_FUNCTION\n"
+    write("exported/whole.exp", whole)  # what stands in it alone, too, counts once
     write("exported/IO.EXP", """PLC_CONFIGURATION
 _GLOBAL
 _VERSION: 3
