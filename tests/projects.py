@@ -549,7 +549,7 @@ CONFIGURATION Config0
   END_RESOURCE
 END_CONFIGURATION
 """
-    path = write("lists/plant.st", plant)
+    path = write("instructions/plant.st", plant)
     assert run("check", path).startswith("ok"), run("check", path)
     run("new", "of_lists", "--from", path)
     write("of_lists.yaml", (work / "of_lists.yaml").read_text() + "expect:\n" + "".join(
@@ -558,15 +558,15 @@ END_CONFIGURATION
             (5, "late", "false"), (5, "passed", "false"), (35, "late", "true"), (35, "passed", "true"), (35, "latch.q", "true"), (35, "jumped", 5),
             (35, "rounds", 4))))
     run("run", "of_lists.yaml", "--quiet")
-    write("lists/old.EXP", "PROGRAM Old\nVAR n, m : INT; END_VAR\nLD n\nADD 1\nST n\nGE 3\nJMPCN behind\nLD 7\nST m\nbehind:\nLD m\nEND_PROGRAM\n"
+    write("instructions/old.EXP", "PROGRAM Old\nVAR n, m : INT; END_VAR\nLD n\nADD 1\nST n\nGE 3\nJMPCN behind\nLD 7\nST m\nbehind:\nLD m\nEND_PROGRAM\n"
           "ACTION Turn:\nLD n\nST m\nEND_ACTION\n\nPROGRAM Shorter\nLD TRUE\nJMPC away\nLD FALSE\naway:\nRET\nEND_PROGRAM\n")
-    run("new", "old_lists", "--from", "lists/old.EXP")
+    run("new", "old_lists", "--from", "instructions/old.EXP")
     write("old_lists.yaml", (work / "old_lists.yaml").read_text() + "expect:\n  - {at: 15 ms, Old.m: 0}\n  - {at: 25 ms, Old.m: 7}\n")
     run("run", "old_lists.yaml", "--quiet")
-    wrong = write("lists/wrong.st", plant.replace("ANDN b\n      ST both", "ANDN bb\n      ST both"))
+    wrong = write("instructions/wrong.st", plant.replace("ANDN b\n      ST both", "ANDN bb\n      ST both"))
     said = run("check", wrong, code=2)
     assert "wrong.st:22:12: error[L0904]: 'bb' is not declared" in said, said
-    wrong = write("lists/wrong.st", plant.replace("      )\n      )", "      )"))
+    wrong = write("instructions/wrong.st", plant.replace("      )\n      )", "      )"))
     assert "error[L0903]: this list has a '(' without a ')'" in run("check", wrong, code=2)
 
 

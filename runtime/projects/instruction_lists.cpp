@@ -56,7 +56,8 @@ bool begins_list(const std::vector<Token>& tokens, std::size_t at) {
     const Word next = word(at + 1);
     const bool is_statement = next == Word::assign || next == Word::open || next == Word::dot ||
                               next == Word::open_bracket || next == Word::semicolon;
-    return (is_load && !is_statement) || (goes_away && next == Word::name);
+    const bool goes = goes_away && next == Word::name && word(at + 2) != Word::semicolon;
+    return (is_load && !is_statement) || goes;
 }
 
 /// VAR, VAR_INPUT and their like.
