@@ -22,7 +22,7 @@ struct Checked {
     bool dispatches = false;         ///< calls find routines by instances
     /// Of the program's addresses that become numbers (`code/addresses.hpp`); null: none does.
     Variable *numbered = nullptr, *numbers = nullptr;
-    Image image = {};                ///< the process image
+    Image image = {};                                 ///< the process image
     std::unordered_set<const Source*> foreign_users;  ///< that have names of libraries not here
     /// Variables of IEC_TIMER, and what calls make them; null: not always the same.
     std::unordered_map<const Variable*, const BlockType*> called_as = {};

@@ -63,7 +63,6 @@ void assign(Writing& w, const Location& to, const Type& type, const Expression& 
 
 // references.cpp
 
-
 /// The first of the three slots that a reference is in.
 Slot reference(Writing& w, const Expression& e);
 /// That of where `place` is.
