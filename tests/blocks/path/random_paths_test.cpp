@@ -150,7 +150,7 @@ std::string fault_of(std::uint64_t seed, std::size_t most, double harder = 1) {
     std::vector<PathPiece> ring(wanted.curves.size() < 8 ? 8 : wanted.curves.size() / 2 + 2);
     Path path;
     std::size_t given = 0;
-    double length = 0, before = 0;
+    double length = 0, before = 0, base = -1, lasts = 0;
     for (const PathCurve& curve : wanted.curves) length += curve.length;
     const double dt = random.decades(-3, -1) * length / wanted.limits[0].path.velocity;
     const double commands = random.share() < 0.3 ? 0 : random.decades(-3, -1);
@@ -171,7 +171,9 @@ std::string fault_of(std::uint64_t seed, std::size_t most, double harder = 1) {
         const std::string what = violation(m, limits);
         if (!what.empty()) return what + " in scan " + std::to_string(scan);
         if (path.lost) return "lost";
-        if (passes_stop(path, ring, limits))
+        const bool is_new = path.leg.base != base || path.leg.duration() != lasts;
+        base = path.leg.base, lasts = path.leg.duration();
+        if (is_new && passes_stop(path, ring, limits))
             return "a stop is passed in scan " + std::to_string(scan);
         if (m.path.position < before - 1e-9 * length) return "position falls";
         before = m.path.position;
