@@ -1,0 +1,51 @@
+#include "runtime/st/check/mixed_signs.hpp"
+
+#include <algorithm>
+
+#include "runtime/st/check/checking.hpp"
+#include "runtime/st/functions/standard.hpp"
+
+namespace lineshaft::st {
+
+namespace {
+
+/// Integers of which something is reckoned.
+struct Reckoned {
+    int width = 0;  ///< of the widest variable
+    bool has_signed = false, has_unsigned = false;
+};
+
+/// MIN, SEL and their like, which give one of what they are given.
+bool is_of_its_arguments(const Expression& e) {
+    return e.kind == E::call && e.standard &&
+           (e.standard->typing == Typing::common || e.standard->typing == Typing::chosen);
+}
+
+/// False: there is something else in it.
+bool add_reckoned(Reckoned& to, const Expression& e) {
+    if (is_constant(e)) return true;
+    if (e.kind == E::converted) return add_reckoned(to, *e.operands[0]);
+    if (is_of_its_arguments(e)) {
+        const auto first = e.arguments.begin() + (e.standard->typing == Typing::chosen);
+        return std::all_of(first, e.arguments.end(),
+                           [&](const Argument& a) { return add_reckoned(to, *a.value); });
+    }
+    if (e.kind == E::binary || (e.kind == E::unary && e.op != Word::not_))
+        return add_reckoned(to, *e.operands[0]) &&
+               (e.kind == E::unary || add_reckoned(to, *e.operands[1]));
+    to.width = std::max<int>(to.width, e.type->bits);
+    (e.type->is_signed ? to.has_signed : to.has_unsigned) = true;
+    return e.type->kind == Kind::integer;
+}
+
+}  // namespace
+
+bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to) {
+    const bool are_integers = from.kind == Kind::integer && to.kind == Kind::integer;
+    Reckoned all;
+    const bool is_reckoned = e.kind == E::binary || is_of_its_arguments(e);
+    return are_integers && !to.is_subrange && is_reckoned && add_reckoned(all, e) &&
+           all.has_signed && all.has_unsigned && all.width <= to.bits;
+}
+
+}  // namespace lineshaft::st
