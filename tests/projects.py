@@ -889,7 +889,19 @@ END_DATA_BLOCK
           for name, value in (("first", 1), ("always", 160), ("early", 16), ("high", 60), ("slow", 80), ("fast", 80), ("none", 0))))
     run("run", "memory.yaml", "--quiet")
     (work / "Memory/Main.scl").write_text("FUNCTION_BLOCK Alone\nBEGIN\nEND_FUNCTION_BLOCK\n")
-    assert "has no PROGRAM that a task could run" in run("new", "memory_alone", "--from", "Memory", code=2)
+    run("new", "memory_alone", "--from", "Memory")
+    assert "blocks:\n  alone: {type: Alone, task: main}\n" in (work / "memory_alone.yaml").read_text()
+    write("MyBlocks.st", "FUNCTION_BLOCK MyLatch\nVAR_INPUT s : BOOL; END_VAR\nVAR_OUTPUT q : BOOL; END_VAR\nq := q OR s;\nEND_FUNCTION_BLOCK\n"
+          "FUNCTION_BLOCK Mover\nVAR_IN_OUT axis : AXIS_REF; END_VAR\nEND_FUNCTION_BLOCK\n"
+          "FUNCTION_BLOCK Lent\nVAR_IN_OUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
+    run("new", "my_blocks", "--from", "MyBlocks.st")
+    assert "  my_latch: {type: MyLatch, task: main}\n  mover: {type: Mover, task: main, axis: mover_axis}\n" in (work / "my_blocks.yaml").read_text()
+    run("run", "my_blocks.yaml", "--quiet")
+    assert "lineshaft new NAME --from MyBlocks.st" in run("run", "MyBlocks.st", code=2)
+    write("Sum.st", "FUNCTION Sum : INT\nVAR_INPUT a : INT; END_VAR\nSum := a;\nEND_FUNCTION\n")
+    assert "has no PROGRAM that a task could run" in run("new", "sum", "--from", "Sum.st", code=2)
+    run("new", "ending.yml")
+    assert (work / "ending.yaml").exists()
 
 
 def check_softmotion():

@@ -204,6 +204,7 @@ def check_refusals():
         ("run_until", {"time": "soon"}, "soon"),
         ("run_until", {"time": 1e300}, "time"),
         ("run_until", {"time": True}, "expected a time"),
+        ("run_until", {"time": 0}, "has been: the machine is at"),
     ]:
         status, answer = machine.ask(f"/api/{path}", body)
         assert status == 400 and words in json.dumps(answer), (path, body, answer)

@@ -154,17 +154,33 @@ assert run("check", "marked", code=0) == "ok  marked: 4 files\n"
 assert run("check", "short/fault.st", code=0) == "ok  short/fault.st\n"
 
 # What stands at the end, by name or of a block.
-write("seen/main.st", "PROGRAM Main\nVAR n : INT := 3; t : TON; END_VAR\nEND_PROGRAM\n")
+write("seen/main.st", "PROGRAM Main\nVAR n : INT := 3; t : TON; s : STRING := 'it$'s'; w : ARRAY[0..1] OF WSTRING := [2(\"ä\")]; "
+      "p : STRUCT x : INT; y : STRING; END_STRUCT; END_VAR\nEND_PROGRAM\n")
 write("seen/a.yaml", "lineshaft: 1\nsources: [main.st]\ntasks: {t: {every: 1 ms}}\n"
       "blocks: {main: {type: Main, task: t}}\nrun: {for: 1 ms}\n")
 shown = run("run", "seen/a.yaml", "--show", "main", code=0)
-assert "main.n" in shown and "main.t." not in shown, shown
+shown = dict(line.split(None, 1) for line in shown.splitlines() if line.startswith("main."))
+assert shown["main.n"] == "3" and shown["main.t.q"] == "false" and shown["main.p.x"] == "0", shown
+assert shown["main.s"] == "'it$'s'" and shown["main.w[1]"] == "'ä'" and shown["main.p.y"] == "''", shown
+assert json.loads(run("run", "seen/a.yaml", "--show", "main.w,main.p,main.s,main.n", "--json", code=0))["show"] == \
+    {"main.w[0]": "ä", "main.w[1]": "ä", "main.p.x": 0, "main.p.y": "", "main.s": "it's", "main.n": 3}
+refused = subprocess.run([lineshaft, "run", "seen/a.yaml", "--show", "Main"], cwd=folder, capture_output=True, text=True)
+assert refused.returncode == 2 and "no block 'Main'" in refused.stderr and "'main'" in refused.stderr, refused
 said = run("run", "marked/a.yaml", "--show", "n,inputs.on", code=0).splitlines()
 assert [line.split() for line in said[-4:]] == [["n.q", "false"], ["n.cv", "0"], ["n.error", "false"], ["inputs.on", "false"]] or \
     [line.split() for line in said[-3:]] == [["n.q", "false"], ["n.cv", "0"], ["inputs.on", "false"]], said
 assert json.loads(run("run", "marked/a.yaml", "--show", "n.cv", "--json", code=0))["show"] == {"n.cv": 0}
 refused = subprocess.run([lineshaft, "run", "marked/a.yaml", "--show", "n.vc"], cwd=folder, capture_output=True, text=True)
 assert refused.returncode == 2 and "n.vc" in refused.stderr or "'vc'" in refused.stderr, refused
+
+# What is nearly right is told.
+write("nearly/one.st", "TEST 'one'\n  ASSERT_TRUE(TRUE);\nEND_TEST\n")
+for asked, words in ((["run", "marked/a"], "did you mean 'marked/a.yaml'?"), (["run", "marked/a.yml"], "did you mean 'marked/a.yaml'?"),
+                     (["run", "marked/a.yaml", "--trcae", "x.csv"], "did you mean '--trace'?\nlineshaft run --help says more"),
+                     (["run", "nearly/one.st"], "'lineshaft test one.st' runs its TESTs"), (["explain", "axis"], "did you mean 'axes'?"),
+                     (["run", "marked/a.yaml", "--show", "on"], "did you mean 'inputs.on'?"), (["explain", "qqq"], "'lineshaft explain' lists them")):
+    refused = subprocess.run([lineshaft, *asked], cwd=folder, capture_output=True, text=True)
+    assert refused.returncode == 2 and words in refused.stderr, (asked, refused)
 
 # Helps say choices as people write them; blocks are searched.
 commands = re.findall(r"^  ([a-z]+) ", run("--help", code=0).split("Subcommands:")[1], re.M)

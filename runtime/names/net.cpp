@@ -48,7 +48,9 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
     const auto name = split_signal(text);
     if (!name) {
         read.fail(code::unknown_signal, node, fmt::format("'{}' is not a signal", text),
-                  "a signal is written block.port, inputs.name or outputs.name");
+                  std::ranges::find(inputs, text, &InputNode::name) != inputs.end()
+                      ? fmt::format("did you mean 'inputs.{}'?", text)
+                      : "a signal is written block.port, inputs.name or outputs.name");
         return {};
     }
     if (name->owner == "inputs") return find_input(read, node, name->port);

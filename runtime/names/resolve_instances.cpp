@@ -178,8 +178,13 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
                         field->direction == Direction::output ? "an" : "a",
                         name_of(field->direction), block.described()),
             fmt::format("'lineshaft blocks {}' lists its inputs", block.type->name));
-    if (!st::find_text(*block.type, key.text).empty())
-        return (void)to.net.find(to.read, key, fmt::format("{}.{}", block.name, key.text));
+    if (const auto text = st::find_text(*block.type, key.text); !text.empty())
+        return to.read.fail(
+            code::port_cannot_be_set, key,
+            fmt::format("'{}' is a STRING of {}, which no program's file gives", text,
+                        block.described()),
+            fmt::format("call {} in a PROGRAM of the sources, which gives it: {} := 'text'",
+                        block.type->name, text));
     const std::string message =
         fmt::format("{} has no parameter or input '{}'", block.described(), key.text);
     if (key.text == "on_error")

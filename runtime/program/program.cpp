@@ -12,6 +12,7 @@
 #include "runtime/projects/plain_text.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/library/test_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft {
@@ -65,6 +66,17 @@ Node node_of(std::string_view text) {
     return node;
 }
 
+/// What a source that is taken for a program is good for.
+std::string use_of(const std::shared_ptr<const SourceFile>& source) {
+    const std::string name = fs::path(source->path).filename().string();
+    return st::is_test_file(source)
+               ? fmt::format("'lineshaft test {}' runs its TESTs", name)
+               : fmt::format(
+                     "'lineshaft new NAME --from {}' writes a program around it; or name "
+                     "it in the 'sources' of one",
+                     name);
+}
+
 }  // namespace
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
@@ -72,8 +84,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.title = fs::path(file->path).stem().string();
     if (projects::is_source(file->path)) {
         read_.diagnostics().add(code::unknown_kind_of_file, {file, 1, 1, 1},
-                                "this is Structured Text, not a program",
-                                "name it in the 'sources' of a program");
+                                "this is Structured Text, not a program", use_of(file));
         return std::move(program_);
     }
     const std::string ending = lower(fs::path(file->path).extension().string());

@@ -33,7 +33,7 @@ std::string refusal(const Json& head, const std::string& state, const std::strin
         return fmt::format("the checkpoint is of lineshaft {}, this is {}",
                            text_at(head, "version"), version());
     if (text_at(head, "program") != program)
-        return "the checkpoint is of another program, or of other parameters";
+        return "the checkpoint is of another program, of other parameters, or of another command";
     if (text_at(head, "state") != text_hash(state)) return "the checkpoint is not whole";
     return {};
 }
@@ -96,7 +96,8 @@ std::optional<std::string> read_checkpoint(const std::string& path, const std::s
     if (wrong.empty()) return state;
     out.add(code::checkpoint_does_not_fit,
             {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,
-            "run the program from its start: without --resume");
+            "'serve' goes on from what it wrote, 'run' from what that wrote; without --resume it "
+            "runs from its start");
     return {};
 }
 

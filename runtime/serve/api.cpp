@@ -6,6 +6,7 @@
 
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/units.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -409,7 +410,16 @@ ApiReply Api::run_until(const ApiRequest& request) {
     Diagnostics out;
     const auto time = time_of(wanted, out);
     if (!time) return mistake(out);
-    return after([this, goal = *time] { live_.run_until(goal); });
+    const auto begun = live_.mailbox().ask(
+        [this, goal = *time] { return std::pair(live_.run_until(goal), live_.state()); });
+    if (!begun) return too_much();
+    const auto& [goes_on, state] = *begun;
+    if (!goes_on)
+        return failure(400,
+                       fmt::format("{} has been: the machine is at {}", format_time(*time),
+                                   format_time(state.time)),
+                       "name a later time, or serve the program again from its start");
+    return {200, state_json(state, loaded_)};
 }
 
 ApiReply Api::speed(const ApiRequest& request) {

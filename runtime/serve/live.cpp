@@ -181,10 +181,11 @@ std::int64_t Live::step(int task, std::int64_t scans) {
     return time() < limit ? std::max<std::int64_t>(steps_, 0) : 0;
 }
 
-void Live::run_until(std::int64_t time) {
-    if (time <= this->time()) return pause();
+bool Live::run_until(std::int64_t time) {
+    if (time < this->time()) return false;
     resume();
     goal_ = time;
+    return true;
 }
 
 void Live::set_speed(double speed) {

@@ -102,8 +102,8 @@ class Live : public Observer {
     /// Pauses, and runs so many scans of a task, any task's for -1, but for no longer than a few
     /// milliseconds of the clock. Returns how many of them are left.
     std::int64_t step(int task, std::int64_t scans);
-    /// Goes on until `time` [ns], then pauses.
-    void run_until(std::int64_t time);
+    /// Goes on until `time` [ns], then pauses. False: that has been, and nothing changes.
+    bool run_until(std::int64_t time);
     void set_speed(double speed);
 
     void add(std::shared_ptr<Stream> stream) { streams_.push_back(std::move(stream)); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
+#include <filesystem>
 #include <new>
 #include <sstream>
 #include <system_error>
@@ -41,6 +42,16 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
         out.add(code::not_yaml, source.mark(0),
                 fmt::format("the file cannot be read as YAML: {}", fault.what()));
     }
+}
+
+/// `line.yaml` of `line` or `line.yml`, where that is there.
+std::string file_meant(const std::string& path) {
+    std::error_code unknown;
+    std::filesystem::path other = path;
+    other.replace_extension(".yaml");
+    const bool is_name = path.find('\0') == path.npos;
+    if (!is_name || other == path || !std::filesystem::is_regular_file(other, unknown)) return {};
+    return fmt::format("did you mean '{}'?", other.string());
 }
 
 std::string reason_of(int error) {
@@ -102,7 +113,8 @@ std::shared_ptr<const SourceFile> read_source(const std::string& path, Diagnosti
     if (error == 0) text = read_bytes(path, limits.bytes + 1, error);
     if (error != 0) {
         out.add(code::file_cannot_be_read, std::move(where),
-                fmt::format("cannot read '{}': {}", path, reason_of(error)), looked_for);
+                fmt::format("cannot read '{}': {}", path, reason_of(error)),
+                looked_for.empty() ? file_meant(path) : looked_for);
         return nullptr;
     }
     if (text.size() > limits.bytes) {

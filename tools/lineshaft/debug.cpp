@@ -28,7 +28,9 @@ constexpr const char* debug_help =
     "stopOnEntry; stopAtEnd; test, the name of a TEST, if the program is a file of tests, or a\n"
     "folder with some. Breakpoints stand in Structured Text; tasks are threads; stepBack and\n"
     "reverseContinue go back. The run is that of 'lineshaft run', to the same bytes.\n"
-    "runtime/debug/README.md says how an editor connects.";
+    "Breakpoints take conditions, counts and messages to log; function breakpoints are conditions\n"
+    "on signals, slave.velocity > 20 mm/s. VS Code's extension starts it; nvim-dap has it as an\n"
+    "adapter {type = 'executable', command = 'lineshaft', args = {'debug'}}.";
 
 struct DebugOptions {
     RunCommand run;

@@ -63,7 +63,11 @@ void add_explain(CLI::App& app, Exit& result) {
             fmt::print("{}\n", text);
             return;
         }
-        spdlog::error("there is no code and no topic '{}'; 'lineshaft explain' lists them", *what);
+        std::vector<std::string> names;
+        for (const Topic& topic : topics) names.emplace_back(topic.name);
+        spdlog::error("there is no code and no topic '{}'; {}", *what,
+                      nearest(*what, names).empty() ? "'lineshaft explain' lists them"
+                                                    : suggest(*what, names));
         result = Exit::wrong;
     });
 }

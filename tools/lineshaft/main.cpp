@@ -120,6 +120,29 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     return fmt::format("there is no command '{}'; {}", word, lineshaft::suggest(word, names));
 }
 
+/// Of an option that is not known the one that is meant.
+std::string meant_options(const CLI::App& command, const CLI::Error& error) {
+    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return {};
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back(name);
+    const std::string what = error.what();
+    for (std::size_t at = what.find(" --"); at != what.npos; at = what.find(" --", at + 1)) {
+        const std::string word = what.substr(at + 3, what.find(' ', at + 3) - at - 3);
+        if (!lineshaft::nearest(word, names).empty())
+            return "; " + lineshaft::suggest(word, names, "--");
+    }
+    return {};
+}
+
+std::string wrong_command_line(const CLI::App& app, const CLI::Error& error) {
+    const auto asked = app.get_subcommands();
+    const CLI::App& command = asked.empty() ? app : *asked.front();
+    return fmt::format("lineshaft: error: {}{}\nlineshaft {}{}--help says more.\n", error.what(),
+                       meant_options(command, error), asked.empty() ? "" : command.get_name(),
+                       asked.empty() ? "" : " ");
+}
+
 /// The exit code.
 int run_command(int argc, char** argv) {
     using namespace lineshaft;
@@ -141,8 +164,8 @@ int run_command(int argc, char** argv) {
             return static_cast<int>(Exit::wrong);
         }
     }
-    app.failure_message([](const CLI::App*, const CLI::Error& error) {
-        return fmt::format("lineshaft: error: {}\nlineshaft --help says more.\n", error.what());
+    app.failure_message([](const CLI::App* asked, const CLI::Error& error) {
+        return wrong_command_line(*asked, error);
     });
     try {
         app.parse(argc, argv);

@@ -57,6 +57,7 @@ struct NewCommand {
 
 Exit execute(const NewCommand& command) {
     std::filesystem::path path = command.name;
+    if (path.extension() == ".yml") path.replace_extension();
     if (path.extension() != ".yaml") path += ".yaml";
     std::error_code unknown;
     if (std::filesystem::exists(path, unknown)) {

@@ -153,6 +153,30 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
     return blocks;
 }
 
+/// Of sources without a PROGRAM an instance of each FUNCTION_BLOCK that a program's file can have:
+/// one that is given no variables of others but axes. `MyTimer` is my_timer.
+std::vector<NewBlock> instances_of(const st::Library& library, const std::string& task) {
+    std::vector<NewBlock> blocks;
+    for (const BlockType& kind : library.kinds()) {
+        const auto is_lent = [](const Field& field) {
+            return field.required && field.refers != "axis";
+        };
+        if (!kind.doc.starts_with("FUNCTION_BLOCK ") || std::ranges::any_of(kind.fields, is_lent))
+            continue;
+        std::string name;
+        for (std::size_t i = 0; i < kind.name.size(); ++i) {
+            const char c = kind.name[i];
+            const bool begins = i > 0 && c != lower(c) && is_letter(kind.name[i - 1]) &&
+                                kind.name[i - 1] == lower(kind.name[i - 1]) &&
+                                kind.name[i - 1] != '_';
+            name += begins ? "_" : "";
+            name += is_letter(c) || is_digit(c) ? lower(c) : '_';
+        }
+        blocks.push_back({name, std::string(kind.name), task});
+    }
+    return blocks;
+}
+
 /// As on a controller: without power until the sources give it.
 NewBlock axis(const std::string& name, const std::string& task) {
     return {name, "axis", task, {{"needs_power", "true"}}};
@@ -185,7 +209,8 @@ std::vector<NewBlock> axes_of(const st::Library& library, std::vector<NewBlock>&
     for (NewBlock& owner : owners) {
         const auto kind = std::ranges::find(library.kinds(), owner.type, &BlockType::name);
         for (const Field& field : kind->fields) {
-            const bool is_axis = field.refers == "axis" && field.global.empty() && !field.required;
+            const bool is_axis = field.refers == "axis" && field.global.empty() &&
+                                 (!field.required || !is_program(*kind));
             if (!is_axis) continue;
             std::string name = plain_name(fmt::format("{}_{}", owner.name, field.name));
             if (name.ends_with('_')) name.pop_back();
@@ -419,10 +444,11 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto& organization_blocks = project.organization_blocks;
     const bool has_memory = std::ranges::any_of(organization_blocks, is_memory);
     if (has_memory && std::ranges::all_of(organization_blocks, is_memory)) programs.clear();
+    if (programs.empty()) programs = instances_of(*library, tasks.front().name);
     if (programs.empty()) {
         out.add(code::entry_is_missing, {},
                 fmt::format("'{}' has no PROGRAM that a task could run", path),
-                "write a PROGRAM that calls its function blocks");
+                "write a PROGRAM that calls its functions and function blocks");
         return {};
     }
     std::vector<NewBlock> blocks = named_blocks(*library, programs);

@@ -9,6 +9,8 @@
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/reader.hpp"
+#include "runtime/st/library/text_variables.hpp"
+#include "runtime/st/types/value_text.hpp"
 #include "runtime/trace/event_writer.hpp"
 #include "runtime/trace/trace_files.hpp"
 #include "tools/lineshaft/run_command.hpp"
@@ -135,40 +137,73 @@ void check_files(const RunCommand& command, const Loaded& loaded, Diagnostics& o
     if (writes_to_stdout(command)) check_stdout(command, loaded, out);
 }
 
-/// An output of a block, or of one in Structured Text a variable of its own. `part` is its path.
-bool is_shown(const Net& net, const Signal& signal, std::string_view part) {
+/// What `--show` prints: a signal, or a text, which is none.
+struct Shown {
+    std::string name;
+    std::optional<Signal> signal = {};
+    st::TextVariable text = {};
+    const std::byte* block = nullptr;  ///< of a text
+
+    std::string value() const {
+        return signal ? signal->describe(signal->value())
+                      : st::text_literal(st::text_of(text, block));
+    }
+    Json json() const {
+        return signal ? to_json(*signal, signal->value())
+                      : Json(st::printable(st::text_of(text, block)));
+    }
+};
+
+/// An output of a block, or of one in Structured Text a variable of its own.
+bool is_shown(const Net& net, const Signal& signal) {
     if (signal.port.instance < 0) return false;
     const Direction direction = net.field(signal.port).direction;
-    if (direction == Direction::output) return true;
-    return direction == Direction::local && net.instance(signal.port.instance).type->owner &&
-           part.find('.') == part.npos;
+    return direction == Direction::output ||
+           (direction == Direction::local && net.instance(signal.port.instance).type->owner);
 }
 
-/// What `--show` names: signals, or a block with all that it shows.
-std::vector<Signal> shown_signals(const RunCommand& command, Loaded& loaded, Diagnostics& out) {
-    std::vector<Signal> shown;
+/// `whole` itself, or a part of it.
+bool is_in(std::string_view name, std::string_view whole) {
+    return name.starts_with(whole) &&
+           (name.size() == whole.size() || name[whole.size()] == '.' || name[whole.size()] == '[');
+}
+
+void add_texts(const BlockPlace& block, std::string_view wanted, std::vector<Shown>& to) {
+    for (const st::TextVariable& text : st::text_variables(*block.type)) {
+        std::string name = fmt::format("{}.{}", block.name, text.name);
+        if (is_in(name, wanted)) to.push_back({std::move(name), {}, text, block.published});
+    }
+}
+
+/// What `--show` names: signals and texts, or a block, a structure or an array with all that it
+/// has.
+std::vector<Shown> shown_signals(const RunCommand& command, Loaded& loaded, Diagnostics& out) {
+    std::vector<Shown> shown;
     Machine& machine = loaded.linked.machine;
+    const Net& net = loaded.linked.net;
     for (const std::string& name : command.shown) {
         const std::size_t before = shown.size();
         for (const Signal& signal : machine.signals)
-            if (signal.name.starts_with(name + ".") &&
-                is_shown(loaded.linked.net, signal,
-                         std::string_view(signal.name).substr(name.size() + 1)))
-                shown.push_back(signal);
+            if (signal.name != name && is_in(signal.name, name) && is_shown(net, signal))
+                shown.push_back({signal.name, signal});
+        for (const BlockPlace& block : machine.blocks) add_texts(block, name, shown);
         if (shown.size() != before) continue;
         Node node;
         node.text = name;
-        if (const auto signal = loaded.linked.net.find(Reader(out), node, name))
-            shown.push_back(machine.placed(*signal));
+        const bool is_block =
+            is_identifier(name) &&
+            std::ranges::find(net.inputs, name, &InputNode::name) == net.inputs.end();
+        if (is_block && net.find_block(Reader(out), node, name) < 0) continue;
+        if (const auto signal = net.find(Reader(out), node, name))
+            shown.push_back({signal->name, machine.placed(*signal)});
     }
     return shown;
 }
 
 /// The values at the end.
-void print_shown(const RunCommand& command, const std::vector<Signal>& shown) {
+void print_shown(const RunCommand& command, const std::vector<Shown>& shown) {
     std::FILE* const out = writes_to_stdout(command) ? stderr : stdout;
-    for (const Signal& signal : shown)
-        fmt::print(out, "{:28} {}\n", signal.name, signal.describe(signal.value()));
+    for (const Shown& one : shown) fmt::print(out, "{:28} {}\n", one.name, one.value());
 }
 
 /// What --trace writes.
@@ -188,7 +223,7 @@ Exit execute(const RunCommand& command) {
     auto loaded = load(command, {}, out);
     if (!loaded) return report(out, command.common.json);
 
-    const std::vector<Signal> shown = shown_signals(command, *loaded, out);
+    const std::vector<Shown> shown = shown_signals(command, *loaded, out);
     if (!out.empty()) return report(out, command.common.json);
 
     ProgressLine line(command.common.quiet || command.common.json);
@@ -203,8 +238,8 @@ Exit execute(const RunCommand& command) {
     const RunReport result = run(*loaded, how);
     const bool has_run = result.refused.empty();
     Json more;
-    for (const Signal& signal : shown)
-        if (has_run) more["show"][signal.name] = to_json(signal, signal.value());
+    for (const Shown& one : shown)
+        if (has_run) more["show"][one.name] = one.json();
     const Exit exit = tell(command, *loaded, result, more);
     if (has_run && !command.common.json) print_shown(command, shown);
     return exit;
@@ -322,9 +357,10 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--recording", command->recording,
                     "Play back what 'lineshaft serve' recorded, and end where that ends")
         ->type_name("FILE.yaml");
-    sub->add_option("--show", command->shown,
-                    "Print what these signals are at the end, or all outputs of a block and the "
-                    "variables of one in Structured Text: x.position,move")
+    sub->add_option(
+           "--show", command->shown,
+           "Print what these are at the end: signals, texts, and blocks, structures and arrays "
+           "with all that they have: x.position,main")
         ->type_name("SIGNALS")
         ->delimiter(',');
     sub->callback([command, &result] { result = execute(*command); });

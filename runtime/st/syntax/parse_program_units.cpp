@@ -168,6 +168,14 @@ void parse_globals(Parsing& p) {
     p.tree.globals.push_back(std::move(block));
 }
 
+bool begins_statement(const Cursor& p) {
+    static constexpr Word words[] = {Word::if_, Word::case_, Word::for_, Word::while_,
+                                     Word::repeat_};
+    static constexpr Word behind[] = {Word::assign, Word::open, Word::open_bracket, Word::dot};
+    return std::ranges::find(words, p.here().word) != std::end(words) ||
+           (p.is_name() && std::ranges::find(behind, p.next().word) != std::end(behind));
+}
+
 }  // namespace
 
 std::string_view name_of_list(const Source& source) {
@@ -202,7 +210,14 @@ void parse_declaration(Parsing& p) {
         p.accept(Word::semicolon);
         return;
     }
-    expected(p, "a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
+    if (begins_statement(p))
+        fail(p, code::something_else_expected, p.here().place,
+             "a statement stands outside of all blocks",
+             is_tests ? "put it between TEST 'name' and END_TEST"
+                      : "put PROGRAM Main and its VAR ... END_VAR before it, and END_PROGRAM "
+                        "behind it");
+    else
+        expected(p, "a FUNCTION_BLOCK, FUNCTION, PROGRAM, DATA_BLOCK or TYPE");
     p.take();
 }
 

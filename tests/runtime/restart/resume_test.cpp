@@ -109,7 +109,7 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
         return report.refused.list().front().message;
     };
     CHECK(message("02_gear.yaml") ==
-          "the checkpoint is of another program, or of other parameters");
+          "the checkpoint is of another program, of other parameters, or of another command");
     for (const std::size_t size : {whole.size() - 1, whole.size() / 2}) {
         std::ofstream(options.checkpoint_path, std::ios::binary) << whole.substr(0, size);
         CHECK(message("03_ratio_change.yaml") == "the checkpoint is not whole");
