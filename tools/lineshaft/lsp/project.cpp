@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "blocks/catalog.hpp"
+#include "runtime/projects/instruction_lists.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
@@ -136,6 +137,7 @@ std::optional<CheckedProgram> Project::check(const std::string& root, Diagnostic
     if (!is_structured_text(root)) return is_ours(*file) ? check_file(root, {}, out) : std::nullopt;
     auto together = sources_of(root);
     if (!st::is_test_file(file)) {
+        for (auto& text : together) text = projects::with_lists_as_statements(std::move(text), out);
         st::compile(together, standard_blocks(), out);
         return {};
     }
