@@ -15,9 +15,10 @@ class BitBlock {
 
     /// False: it is none, which was told.
     bool read() {
-        words_ = argument_of(call_, scatters_ ? "IN" : "OUT");
-        flags_ = argument_of(call_, scatters_ ? "OUT" : "IN");
-        Expression* count = argument_of(call_, scatters_ ? "COUNT_IN" : "COUNT_OUT");
+        Expression *in = at("IN", 0), *out = at("OUT", 2);
+        words_ = scatters_ ? in : out;
+        flags_ = scatters_ ? out : in;
+        Expression* count = at(scatters_ ? "COUNT_IN" : "COUNT_OUT", 1);
         if (!words_ || !flags_ || !count) return refuse();
         Expression *word = words_, *flag = flags_;
         if (!check(c_, word) || !check(c_, flag) || !check(c_, count)) return false;
@@ -59,6 +60,13 @@ class BitBlock {
     }
 
   private:
+    /// By its name, or its place.
+    Expression* at(std::string_view name, std::size_t place) const {
+        if (Expression* named = argument_of(call_, name)) return named;
+        const bool is_there = place < call_.arguments.size() && !call_.arguments[place].is_named();
+        return is_there ? call_.arguments[place].value : nullptr;
+    }
+
     bool refuse() const {
         return c_.fail(code::type_does_not_fit, call_.place,
                        fmt::format("{} takes elements of arrays", call_.operands[0]->token.text),

@@ -109,12 +109,12 @@ void check_timer(Checking& c, Expression*& timer, std::string_view function) {
 void check_special(Checking& c, Statement*& s) {
     const StandardFunction& f = *s->value->standard;
     if (f.name == "DEMUX") return rewrite_demux(c, s);
-    if (f.name == "SCATTER_BLK" || f.name == "GATHER_BLK") return rewrite_bit_block(c, s);
     if (!check_count(c, *s->value, f) || !order_arguments(c, s->value, f)) return;
     Expression& call = *s->value;
     call.type = &bool_type;  // which nothing takes
     if (f.least == 1) return check_timer(c, call.arguments[0].value, f.name);
     if (f.name == "SCATTER" || f.name == "GATHER") return rewrite_bits(c, s, f.name == "SCATTER");
+    if (f.name == "SCATTER_BLK" || f.name == "GATHER_BLK") return rewrite_bit_block(c, s);
     if (f.name.ends_with("_BLK")) return rewrite_block_move(c, s);
     Expression*& timer = call.arguments[1].value;
     check_timer(c, timer, f.name);

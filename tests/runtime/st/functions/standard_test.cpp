@@ -49,7 +49,7 @@ std::string call_of(const StandardFunction& f, int count, bool by_name, int wron
         const Generic type = f.parameter(static_cast<std::size_t>(i)).type;
         const std::string name = argument_name(f, i);
         const bool is_constant = name == "DIM" && i != wrong;
-        const bool is_element = f.name.ends_with("_BLK") && type == Generic::any && i != wrong;
+        const bool is_element = f.name.ends_with("_BLK") && type != Generic::any_int && i != wrong;
         variables += fmt::format("a{} : {}{};\n", i, is_element ? "ARRAY[0..3] OF " : "",
                                  type_for(type, i == wrong));
         arguments +=
