@@ -59,7 +59,7 @@ TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
     for (const std::string_view name : st::retained(kind)) retained.emplace_back(name);
     CHECK(retained == std::vector<std::string>{"table[1]", "table[2]", "delay.in", "delay.pt",
                                                "delay.q", "delay.et", "delay.keeps_pt",
-                                               "delay.preset"});
+                                               "delay.answers_later", "delay.preset"});
 }
 
 TEST_CASE("Structured Text: with overflow_faults an integer's overflow is a fault", "[st]") {
