@@ -21,7 +21,7 @@ bool is_valid(const Edge<falling>& edge, const KeptState&) {
 
 template <TimerKind kind>
 bool is_valid(const Timer<kind>& timer, const KeptState& machine) {
-    return are_booleans(timer.running, timer.last_in, timer.keeps_pt) &&
+    return are_booleans(timer.running, timer.last_in, timer.keeps_pt, timer.answers_later) &&
            machine.is_moment(timer.start);
 }
 

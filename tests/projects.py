@@ -633,6 +633,7 @@ def check_dialects():
     run("run", "said.yaml", "--quiet")
     write("marked.st", "{attribute 'qualified_only'}\nVAR_GLOBAL g : INT; END_VAR\n" + source)
     run("check", "marked.st")
+    run("check", "marked.st", "--source-dialect", "iec", code=2)
 
 
 def check_neighbours():

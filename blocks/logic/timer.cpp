@@ -15,6 +15,8 @@ std::span<const Field> Timer<kind>::fields() {
         output("q", &T::q, "", "the signal delayed, or the pulse"),
         output("et", &T::et, "ns", "elapsed time, up to pt"),
         local("keeps_pt", &T::keeps_pt, "", "a new pt counts from the next start on"),
+        local("answers_later", &T::answers_later, "",
+              "the call that starts it does not ask for pt"),
         local("preset", &T::preset, "ns", "pt at the last start"),
     };
     return table;
@@ -41,7 +43,10 @@ void Ton::scan(const Scan& now) {
         et = 0;
         return;
     }
-    if (!running) begin(now);
+    if (!running) {
+        begin(now);
+        if (answers_later) return;
+    }
     if (!q) q = elapsed(now);
 }
 
@@ -54,17 +59,22 @@ void Tof::scan(const Scan& now) {
         return;
     }
     if (!q) return;
-    if (!running) begin(now);
+    if (!running) {
+        begin(now);
+        if (answers_later) return;
+    }
     q = !elapsed(now);
 }
 
 template <>
 void Tp::scan(const Scan& now) {
     const bool edge = rising_edge(in, last_in);
-    if (q || edge) {
-        if (!q) begin(now);
+    const bool starts = !q && edge;
+    if (starts) begin(now);
+    if (starts && answers_later)
+        q = true;
+    else if (starts || q)
         q = !elapsed(now);
-    }
     if (!q && !in) et = 0;
 }
 

@@ -31,6 +31,8 @@ inline constexpr std::string_view timer_docs[] = {
 /// pt <= 0 is no time: q of TON and TOF follows `in` at once, TP gives no pulse.
 /// The standard leaves open what a new `pt` does while time runs, and vendors differ. Here the `pt`
 /// of each scan counts until the time is up; after that it has no effect before the next start.
+/// With `answers_later`, as in MatIEC, the call that starts a timer does not look at `pt`: with
+/// pt <= 0 the next one ends it.
 /// With `keeps_pt`, as in Siemens' controllers, it has none from the start on: `preset` counts.
 template <TimerKind kind>
 struct Timer {
@@ -42,7 +44,7 @@ struct Timer {
 
     bool running = false;  ///< TON: since `in` rose; TOF: since it fell
     bool last_in = false;  ///< TP
-    bool keeps_pt = false;
+    bool keeps_pt = false, answers_later = false;
     std::int64_t start = 0;
     std::int64_t preset = 0;  ///< pt at the start
 

@@ -1,5 +1,6 @@
 #include "runtime/model/address.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -32,6 +33,12 @@ std::uint32_t bits_together(AddressCount count) {
     return count == AddressCount::words ? 16 : 8;
 }
 
+/// Numbers that each level of `%IW2.5.7.1` has below the first; so all fit into an area.
+std::uint32_t numbers_in_level(std::size_t levels) {
+    constexpr std::uint32_t numbers[] = {256, 64, 16, 8};
+    return numbers[std::min(std::max<std::size_t>(levels, 1), std::size(numbers)) - 1];
+}
+
 void set_bit(ImageAddress& address, std::uint32_t number, std::uint32_t bit, AddressCount count) {
     address.byte = number * (bits_together(count) / 8) + bit / 8;
     address.bit = bit % 8;
@@ -50,7 +57,8 @@ std::optional<ImageAddress> read_address(std::string_view text, AddressCount cou
     const auto first = take_number(text);
     if (!first) return {};
     address.byte = *first;
-    constexpr std::uint32_t most_inner = 256;
+    const auto points = static_cast<std::size_t>(std::ranges::count(text, '.'));
+    const std::uint32_t most_inner = numbers_in_level(address.bits > 1 ? points : points - 1);
     bool is_hierarchical = false;
     while (text.starts_with('.') && (address.bits > 1 || text.find('.', 1) != text.npos)) {
         text.remove_prefix(1);

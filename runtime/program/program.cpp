@@ -382,7 +382,7 @@ projects::Project read_project(const std::string& path,
         projects::read_sources({project, out, resolve}, file);
     }
     projects::leave_out_repeated_exports(project.sources);
-    projects::read_as_neighbours(project.sources);
+    if (st::plain_text_ending().empty()) projects::read_as_neighbours(project.sources);
     return project;
 }
 

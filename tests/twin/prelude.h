@@ -79,9 +79,9 @@ static inline u64* twin_put_real(u64* to, f64 value) {
 }
 
 /* IEC 61131-3:2013, 6.6.3.5. */
-struct ton { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt; i64 preset; u8 running; i64 start; };
-struct tof { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt; i64 preset; u8 running; i64 start; };
-struct tp { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt; i64 preset; u8 before; i64 start; };
+struct ton { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt, answers_later; i64 preset; u8 running; i64 start; };
+struct tof { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt, answers_later; i64 preset; u8 running; i64 start; };
+struct tp { u8 in; i64 pt; u8 q; i64 et; u8 keeps_pt, answers_later; i64 preset; u8 before; i64 start; };
 struct ctu { i64 data_type; u8 cu, r; i64 pv; u8 q; i64 cv; u8 stops_at_preset, cu_before; };
 struct ctd { i64 data_type; u8 cd, ld; i64 pv; u8 q; i64 cv; u8 stops_at_preset, cd_before; };
 struct ctud { i64 data_type; u8 cu, cd, r, ld; i64 pv; u8 qu, qd; i64 cv; u8 stops_at_preset, cu_before, cd_before; };

@@ -415,7 +415,7 @@ std::string sources_text(const WholeProject& project, const std::filesystem::pat
 std::string dialect_text() {
     const auto names = st::dialect_names();
     const auto chosen = std::ranges::find(names, st::plain_text_ending(), &st::DialectName::ending);
-    return chosen == names.begin() ? "" : fmt::format("dialect: {}\n", chosen->name);
+    return chosen == names.end() ? "" : fmt::format("dialect: {}\n", chosen->name);
 }
 
 }  // namespace

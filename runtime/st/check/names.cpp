@@ -290,10 +290,26 @@ const Type* own_enumeration_with(Checking& c, const Token& token) {
 
 }  // namespace
 
+namespace {
+
+/// Whether `"..."` is a text, though a variable is called so: where a text is due it is the name of
+/// a global STRING alone.
+bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
+    const Dialect& dialect = e.place.dialect();
+    if (!e.token.quoted || dialect.is_loose) return e.token.quoted;
+    const bool is_due = expected && (expected->kind == Kind::text || expected->is_character);
+    if (!is_due || !dialect.quotes_may_enclose_texts) return false;
+    const Variable* variable = find_variable(c, e.token);
+    return variable && (expected->is_wide || !variable->type ||
+                        variable->section != Section::global || variable->type->kind != Kind::text);
+}
+
+}  // namespace
+
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
-    const bool is_text = token.quoted && e->place.dialect().is_loose;
+    const bool is_text = is_text_for(c, *e, expected);
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
         if (value && !is_variable_for(c, token))

@@ -265,7 +265,7 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
     const Type* wanted = is_comparison(e->op) || is_logic(e->op) ? nullptr : expected;
     const bool name_first = left->kind == E::name && is_comparison(e->op);
-    if (name_first && !find_variable(c, left->token)) {
+    if (name_first && (left->token.quoted || !find_variable(c, left->token))) {
         check(c, right);
         check(c, left, right->type);
     }

@@ -24,6 +24,7 @@ std::optional<const Type*> check_typed_function(Checking& c, Expression*& e) {
     const bool is_rounded = standard->result == Generic::any_int && type->is_real();
     const Type* result = check_standard_function(c, call, is_rounded ? &lint_type : type);
     if (!result) return nullptr;
+    if (result->is_any()) return coerce(c, e = call, *type) ? type : nullptr;
     if (is_rounded) return e = call, convert_result(c, e, *result, *type);
     const bool fits = result->kind == Kind::boolean || same_type(*result, *type);
     if (!fits && !widens(*result, *type))
@@ -32,6 +33,37 @@ std::optional<const Type*> check_typed_function(Checking& c, Expression*& e) {
                       fmt::format("write {}", name));
     e = call;
     return fits ? result : convert_result(c, e, *result, *type);
+}
+
+/// What it gives is of the type that it reckons in, and so are its arguments.
+bool reckons_as_wanted(const StandardFunction& f) {
+    const bool is_operation = f.typing == Typing::operation && f.word != Word::mod_ &&
+                              f.result != Generic::boolean && f.result != Generic::any_bit;
+    return is_operation || f.typing == Typing::reals || f.typing == Typing::own ||
+           (f.typing == Typing::real && f.result == Generic::any_real);
+}
+
+/// `LIMIT(IN := n, MX := 5)`: an input of a formal call that is left out has its initial value.
+void add_left_out(Checking& c, Expression*& e, const StandardFunction& f) {
+    const auto& given = e->arguments;
+    if (f.typing != Typing::common || f.most != f.least || given.empty() ||
+        !e->place.dialect().named_inputs_may_be_left_out ||
+        !std::ranges::all_of(given, &Argument::is_named))
+        return;
+    std::vector<std::string> names;
+    for (int i = 0; i < f.least; ++i) names.push_back(argument_name(f, i));
+    for (const Argument& argument : given)
+        if (!find_called(names, argument.name.text)) return;  // is told
+    std::vector<Argument> all = given;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (find_called(given, names[i], &Argument::name)) continue;
+        Token token = e->operands[0]->token;
+        token.word = Word::name;
+        token.text = f.parameter(i).name;
+        all.push_back(
+            {.name = token, .value = make_constant(c, *e, any_integer_type, {.integer = 0})});
+    }
+    e = make_with(c, *e, std::move(all));
 }
 
 }  // namespace
@@ -51,6 +83,9 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     std::vector<Argument> sorted(call.arguments.size());
     std::vector<std::string> names;
     for (int i = 0; i < count; ++i) names.push_back(argument_name(f, i));
+    if (const auto& first = call.arguments[0].name.text;
+        f.typing == Typing::reals && lower(first).starts_with("in"))
+        names = {"IN1", "IN2"};  // of ATAN2, in the standard's second edition
     const bool has_else = find_called(call.arguments, "inelse", &Argument::name);
     if (f.typing == Typing::chosen && f.most > f.least && has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
@@ -113,9 +148,11 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
         return undeclared(c, name, name.place, names);
     }
     const StandardFunction& f = *call.standard;
-    if (!check_count(c, call, f) || !order_arguments(c, e, f)) return nullptr;
+    add_left_out(c, e, f);
+    if (!check_count(c, *e, f) || !order_arguments(c, e, f)) return nullptr;
     const bool passes = f.typing == Typing::common || f.typing == Typing::chosen ||
-                        (f.typing == Typing::scaled && expected && expected->is_real());
+                        (f.typing == Typing::scaled && expected && expected->is_real()) ||
+                        (expected && is_single(*expected) && reckons_as_wanted(f));
     for (std::size_t i = 0; i < e->arguments.size(); ++i) {
         Expression*& value = e->arguments[i].value;
         const bool is_text =

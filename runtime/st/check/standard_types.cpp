@@ -49,8 +49,13 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return become(c, e, dint_type, {.integer = count});
 }
 
+/// What is due, if that is an integer.
+const Type& type_of_bound(const Type* expected) {
+    return expected && expected->kind == Kind::integer ? expected->plain() : dint_type;
+}
+
 /// Of the dimension that a variable says: MUX over those of all.
-const Type* check_chosen_bound(Checking& c, Expression*& e) {
+const Type* check_chosen_bound(Checking& c, Expression*& e, const Type& result) {
     const bool is_lower = e->standard->typing == Typing::lower_bound;
     Expression *array = e->arguments[0].value, *wanted = e->arguments[1].value;
     if (!wanted->type->is_integer())
@@ -70,11 +75,11 @@ const Type* check_chosen_bound(Checking& c, Expression*& e) {
     }
     e = make_call(c, *e, make_name(c, *e->operands[0], "MUX"), std::move(choices));
     if (!check(c, e, &lint_type)) return nullptr;
-    convert(c, e, dint_type);
-    return e->type = &dint_type;
+    convert(c, e, result);
+    return e->type = &result;
 }
 
-const Type* check_open_bound(Checking& c, Expression*& e) {
+const Type* check_open_bound(Checking& c, Expression*& e, const Type& result) {
     Expression*& wanted = e->arguments[1].value;
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
@@ -85,17 +90,17 @@ const Type* check_open_bound(Checking& c, Expression*& e) {
     const bool is_lower = e->standard->typing == Typing::lower_bound;
     e = bound_of(c, *array, is_lower, static_cast<std::size_t>(*dimension) - 1);
     if (!e->type) return nullptr;
-    convert(c, e, dint_type);
-    return e->type = &dint_type;
+    convert(c, e, result);
+    return e->type = &result;
 }
 
-const Type* check_bound(Checking& c, Expression*& e) {
+const Type* check_bound(Checking& c, Expression*& e, const Type* expected) {
     const Type* array = e->arguments[0].value->type;
     if (array->kind != Kind::array && !array->is_open_array())
         return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
-    if (!is_constant(*wanted)) return check_chosen_bound(c, e);
-    if (array->is_open_array()) return check_open_bound(c, e);
+    if (!is_constant(*wanted)) return check_chosen_bound(c, e, type_of_bound(expected));
+    if (array->is_open_array()) return check_open_bound(c, e, type_of_bound(expected));
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
     Wide at = 1;
@@ -248,12 +253,52 @@ void take_numbers_of_enumerations(Checking& c, Expression& call) {
             enumeration_becomes_number(c, argument.value);
 }
 
-const Type* check_common(Checking& c, Expression& call, const Type* expected) {
+/// The greater of two texts, or the smaller: `SEL(a < b, a, b)`.
+Expression* chosen_text(Checking& c, const Expression& call, Word op, Expression* a,
+                        Expression* b) {
+    Expression* is_second = make_binary(c, call.place, call.place, op, a, b);
+    Expression* made = make_call(c, call, make_name(c, *call.operands[0], "SEL"),
+                                 {{.value = is_second}, {.value = a}, {.value = b}});
+    check(c, made);  // it hangs in two places
+    return made;
+}
+
+/// MIN, MAX and LIMIT of texts.
+const Type* check_extreme_text(Checking& c, Expression*& e) {
+    const auto& given = e->arguments;
+    for (const Argument& argument : given)
+        if (has_call(*argument.value))
+            return c.fail(code::not_supported, argument.value->place,
+                          fmt::format("a function within {} of texts is not supported here",
+                                      e->standard->name),
+                          "assign its value to a variable first");
+    Expression* chosen = given[0].value;
+    if (same_name(e->standard->name, "limit")) {
+        chosen = chosen_text(c, *e, Word::less, given[1].value, given[0].value);
+        chosen = chosen_text(c, *e, Word::greater, chosen, given[2].value);
+    } else {
+        const Word op = same_name(e->standard->name, "max") ? Word::less : Word::greater;
+        for (std::size_t i = 1; i < given.size(); ++i)
+            chosen = chosen_text(c, *e, op, chosen, given[i].value);
+    }
+    e = chosen;
+    return e->type;
+}
+
+bool is_text(const Argument& argument) {
+    return argument.value->type->kind == Kind::text;
+}
+
+const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     const Generic result = call.standard->result;
-    if (result == Generic::any_ordered) take_numbers_of_enumerations(c, call);
+    if (call.standard->typing == Typing::common && std::ranges::all_of(call.arguments, is_text))
+        return check_extreme_text(c, e);
+    if (result == Generic::any_elementary) take_numbers_of_enumerations(c, call);
     const Type* type = unite_from(c, call, 0, expected);
+    const bool takes_bits = result == Generic::any_ordered || result == Generic::any_elementary;
     const bool suits = !type || result == Generic::any || type->is_number() || type->is_time() ||
-                       (result == Generic::any_ordered && type->kind == Kind::bits);
+                       (takes_bits && type->kind == Kind::bits);
     return suits ? type : refuse(c, call, "numbers", *type);
 }
 
@@ -307,7 +352,18 @@ bool fold_shift(Checking& c, Expression*& e) {
     return become(c, e, any_integer_type, {.integer = shifted});
 }
 
-const Type* check_places(Checking& c, Expression& call, const Type* expected) {
+/// Of one bit a shift by any place but 0 is FALSE, and a rotation nothing.
+const Type* check_shift_of_truth(Checking& c, Expression*& e) {
+    Expression *given = e->arguments[0].value, *places = e->arguments[1].value;
+    const bool rotates = same_name(e->standard->name.substr(0, 2), "ro");
+    Expression* stays = make_binary(c, e->place, e->place, Word::equal, places,
+                                    make_constant(c, *e, any_integer_type, {}));
+    e = rotates ? given : make_binary(c, e->place, e->place, Word::and_, given, stays);
+    return check(c, e);
+}
+
+const Type* check_places(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     Expression*& places = call.arguments[1].value;
     become_number(c, places);
     take_width(c, call.arguments[0].value, expected);
@@ -316,6 +372,8 @@ const Type* check_places(Checking& c, Expression& call, const Type* expected) {
     if (!count.is_integer() && count.kind != Kind::any_bits)
         return c.fail(code::type_does_not_fit, places->place, "the number of places is an integer");
     if (!coerce(c, places, count.is_any() ? lint_type : count)) return nullptr;
+    if (given.kind == Kind::boolean && !e->place.dialect().packs_as_s7)
+        return check_shift_of_truth(c, e);
     if (given.kind != Kind::bits && given.kind != Kind::integer)
         return refuse(c, call, "a bit string", given, write_its_type);
     return call.standard->result == Generic::boolean ? &bool_type : &given.plain();
@@ -445,15 +503,15 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::reals: return check_reals(c, e, expected);
         case Typing::scaled: return check_scale(c, e, expected);
         case Typing::own:
-        case Typing::common: return check_common(c, call, expected);
+        case Typing::common: return check_common(c, e, expected);
         case Typing::chosen: return check_chosen(c, call, expected);
-        case Typing::places: return fold_shift(c, e) ? e->type : check_places(c, call, expected);
+        case Typing::places: return fold_shift(c, e) ? e->type : check_places(c, e, expected);
         case Typing::bits: return check_bits(c, call, expected);
         case Typing::bit_number: return check_bit_number(c, call, expected);
         case Typing::texts: return check_texts(c, call);
         case Typing::capacity: return check_capacity(c, e);
         case Typing::lower_bound:
-        case Typing::upper_bound: return check_bound(c, e);
+        case Typing::upper_bound: return check_bound(c, e, expected);
         case Typing::element_count: return check_element_count(c, e);
         case Typing::scan_time:
             return call.standard->result == Generic::long_integer     ? &lint_type

@@ -31,7 +31,7 @@ bool is_whole(const Type& type) {
 /// `"text"` is a text where it names nothing.
 void become_text(Checking& c, Expression*& e) {
     if (e->kind != E::name || !e->token.quoted || find_variable(c, e->token)) return;
-    e = make_constant(c, *e, string_type, {.text = std::string(e->token.text)});
+    e = make_text(c, *e);
 }
 
 /// Their number, and the message.
@@ -108,7 +108,7 @@ void check_mocked(Checking& c, Expression& call) {
 bool check_compared(Checking& c, Expression& call) {
     const TestStatement& known = info(call.test);
     Expression *&a = call.arguments[0].value, *&b = call.arguments[1].value;
-    if (a->kind == E::name && !find_variable(c, a->token)) check(c, b);
+    if (a->kind == E::name && (a->token.quoted || !find_variable(c, a->token))) check(c, b);
     const Type* first = check(c, a, b->type);
     const Type* second = check(c, b, first);
     if (!first || !second) return false;

@@ -99,8 +99,27 @@ std::uint8_t pack_of(const TypeText& text) {
     return said && *said > 0 && *said <= 8 ? static_cast<std::uint8_t>(*said) : std::uint8_t{1};
 }
 
+/// `lo AT %B0 : BYTE`, `on AT %X3.0 : BOOL` of a STRUCT OVERLAP; in another one members have bytes
+/// of their own.
+void place_member(Checking& c, const Declaration& declared, bool overlaps, Variable& member) {
+    const Token& at = declared.at;
+    if (at.word != Word::direct) return;
+    const auto place = read_address("%M" + std::string(at.text.substr(1)), AddressCount::bytes);
+    if (!place)
+        return void(c.fail(code::not_declared, at.place,
+                           fmt::format("'{}' is no place in a structure", at.text),
+                           "write the byte, as in %B2, or the bit, as in %X2.0"));
+    if (overlaps && place->bits == 1 && member.type == &bool_type)
+        member.type = find_codesys_type("BIT");
+    if (overlaps) member.address = *place;
+    if (!overlaps)
+        c.warn(code::not_supported, at.place,
+               "the members of a structure stand one behind the other, without the places of AT",
+               "write STRUCT OVERLAP for bytes that are kept as AT says");
+}
+
 const Type* resolve_structure(Checking& c, const TypeText& text) {
-    const bool is_union = text.kind == TypeText::Kind::union_;
+    const bool is_union = text.kind == TypeText::Kind::union_ || text.overlaps;
     Type& type =
         c.make_type(is_union ? Kind::union_ : Kind::structure, is_union ? "UNION" : "STRUCT");
     type.is_unnamed = true;
@@ -114,6 +133,7 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
         if (is_told_by_capitals(c, declared->name, names)) continue;
         if (!is_new_name(c, declared->name, names)) continue;
         type.members.push_back(add(c, c.checked.variables, *declared, member));
+        place_member(c, *declared, text.overlaps, *type.members.back());
         if (c.routine) c.routines_of_members.emplace(type.members.back(), c.routine);
     }
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;

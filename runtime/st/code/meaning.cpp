@@ -48,7 +48,7 @@ void write_truth(std::byte* to, bool value) {
 
 void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
     fmt::memory_buffer text;
-    add_time(text, static_cast<Type::Kind>(kind), value);
+    add_time(text, static_cast<Type::Kind>(kind & 0xFF), value, kind >> 8 != 0);
     write_text(to, {text.data(), text.size()});
 }
 

@@ -19,6 +19,25 @@ Slot emit_shift(Emission& e) {
     return e.result(of_type(Op::wrap_sint, type), e.emit(op, pattern, n));
 }
 
+/// The bytes of the value in reverse order, where the controller does not have them as `is_big`
+/// says.
+template <bool is_big>
+Slot emit_bytes(Emission& e) {
+    const Type& type = e.type();
+    const Slot given = e.value(0);
+    const auto bits = static_cast<Slot>(type.is_time() ? 64 : type.bits);
+    if (e.call.place.dialect().packs_as_s7 == is_big || bits == 8) return e.result(Op::move, given);
+    if (e.is_narrow())
+        return e.result(Op::real_of_bits,
+                        e.emit(Op::swap_bytes, e.emit(Op::real_bits, given), bits));
+    if (!type.is_signed || type.is_time()) return e.result(Op::swap_bytes, given, bits);
+    return e.result(of_type(Op::wrap_sint, type), e.emit(Op::swap_bytes, given, bits));
+}
+
+consteval StandardFunction bytes(std::string_view signature, std::string_view doc, Emit emit) {
+    return {signature, doc, Typing::own, emit};
+}
+
 Slot emit_decode(Emission& e) {
     const Slot last = e.constant(static_cast<std::uint64_t>(e.type().bits - 1));
     const Slot place = e.emit(Op::and_bits, e.value(0), last);
@@ -58,6 +77,10 @@ constexpr StandardFunction bit_strings[] = {
     shift("ROR(IN: ANY_WHOLE; N: ANY_INT): ANY_WHOLE", "the bits N places to the right, in a circle", Op::ror_8),
     {"SWAP(IN: ANY_BIT): ANY_BIT", "the bytes in reverse order", Typing::bits,
      [](Emission& e) { return e.result(Op::swap_bytes, e.value(0), static_cast<Slot>(e.type().bits)); }},
+    bytes("TO_BIG_ENDIAN(IN: ANY_ORDERED): ANY_ORDERED", "IN with its highest byte first", emit_bytes<true>),
+    bytes("TO_LITTLE_ENDIAN(IN: ANY_ORDERED): ANY_ORDERED", "IN with its lowest byte first", emit_bytes<false>),
+    bytes("FROM_BIG_ENDIAN(IN: ANY_ORDERED): ANY_ORDERED", "what TO_BIG_ENDIAN was made of", emit_bytes<true>),
+    bytes("FROM_LITTLE_ENDIAN(IN: ANY_ORDERED): ANY_ORDERED", "what TO_LITTLE_ENDIAN was made of", emit_bytes<false>),
     {"DECO(IN: ANY_INT): ANY_BIT", "the bit of number IN, from 0 on, and no other", Typing::bit_number, emit_decode},
     {"ENCO(IN: ANY_BIT): INT", "the number of the lowest bit that is set, from 0 on; of 0 it is 0",
      Typing::bits, [](Emission& e) { return e.result(Op::lowest_bit, e.value(0)); }},

@@ -50,11 +50,18 @@ Slot emit_extremum(Emission& e) {
 
 Slot emit_limit(Emission& e) {
     const Slot mn = e.value(0), in = e.value(1), mx = e.value(2);
-    if (e.call.place.dialect().vendor != Vendor::siemens)
-        return e.result(least(e), e.emit(greatest(e), in, mn), mx);
+    const Vendor vendor = e.call.place.dialect().vendor;
+    const Op if_less =
+        e.of_number(Op::move_if_lt_float, Op::move_if_lt_unsigned, Op::move_if_lt_signed);
+    if (vendor == Vendor::matiec) {
+        const Slot limited = e.emit(Op::move, mn);
+        e.put(if_less, mn, in, limited, e.emit(least(e), in, mx));
+        e.land();
+        return limited;
+    }
+    if (vendor != Vendor::siemens) return e.result(least(e), e.emit(greatest(e), in, mn), mx);
     const Slot limited = e.emit(least(e), e.emit(greatest(e), in, mn), mx);
-    e.put(e.of_number(Op::move_if_lt_float, Op::move_if_lt_unsigned, Op::move_if_lt_signed), mx, mn,
-          limited, in);
+    e.put(if_less, mx, mn, limited, in);
     e.land();
     return limited;
 }
@@ -94,7 +101,7 @@ constexpr StandardFunction numbers[] = {
     real("ASIN(IN: ANY_REAL): ANY_REAL", "the angle whose sine is IN, -pi/2 to pi/2 [rad]", Op::asin),
     real("ACOS(IN: ANY_REAL): ANY_REAL", "the angle whose cosine is IN, 0 to pi [rad]", Op::acos),
     real("ATAN(IN: ANY_REAL): ANY_REAL", "the angle whose tangent is IN, -pi/2 to pi/2 [rad]", Op::atan),
-    {"ATAN2(IN1, IN2: ANY_REAL): ANY_REAL", "the angle of the point x = IN2, y = IN1, -pi to pi [rad]",
+    {"ATAN2(Y, X: ANY_REAL): ANY_REAL", "the angle of the point (X, Y), -pi to pi [rad]",
      Typing::reals, emit_real, Op::atan2},
     real("ATANH(IN: ANY_REAL): ANY_REAL", "the number whose hyperbolic tangent is IN, -1 to 1", Op::atanh),
     {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square},
@@ -104,11 +111,11 @@ constexpr StandardFunction numbers[] = {
     whole("ROUND(IN: ANY_REAL): ANY_INT", "the nearest whole number; of two the even one", Op::round),
     whole("FLOOR(IN: ANY_REAL): ANY_INT", "the greatest whole number that is not above IN", Op::floor),
     whole("CEIL(IN: ANY_REAL): ANY_INT", "the least whole number that is not below IN", Op::ceil),
-    {"MIN(IN1, IN2, ...: ANY_ORDERED): ANY_ORDERED", "the least of its arguments",
+    {"MIN(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the least of its arguments",
      Typing::common, emit_extremum, Op::min_signed},
-    {"MAX(IN1, IN2, ...: ANY_ORDERED): ANY_ORDERED", "the greatest of its arguments",
+    {"MAX(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the greatest of its arguments",
      Typing::common, emit_extremum, Op::max_signed},
-    {"LIMIT(MN, IN, MX: ANY_ORDERED): ANY_ORDERED", "IN, but at least MN and at most MX; in SCL IN where MN is above MX",
+    {"LIMIT(MN, IN, MX: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN, but at least MN and at most MX; where MN is above MX in SCL IN, in MatIEC MX if IN is above MN, else MN",
      Typing::common, emit_limit},
     {"SEL(G: BOOL; IN0, IN1: ANY): ANY", "IN1 if G, else IN0", Typing::chosen, emit_select},
     {"MUX(K: ANY_INT; IN0, ...: ANY): ANY",

@@ -85,7 +85,7 @@ struct Parameter {
 
 /// A function of IEC 61131-3:2013, tables 25 to 38, or of Siemens' SCL: all that is said of it.
 struct StandardFunction {
-    /// A signature is `LIMIT(MN, IN, MX: ANY_ORDERED): ANY_ORDERED`, with `...` for as many more of
+    /// A signature is `LIMIT(MN, IN, MX: ANY_NUM): ANY_NUM`, with `...` for as many more of
     /// the last parameter as a call gives.
     consteval StandardFunction(std::string_view written, std::string_view about, Typing types,
                                Emit emitted, Op instruction = Op::move);

@@ -78,12 +78,13 @@ Slot emit_delete(Emission& e) {
     return parts.made;
 }
 
-Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count) {
+/// `taken` of `other`'s characters.
+Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count, Slot taken) {
     parts.expect_above(-1, count);
     parts.expect_above(-1, before);
     parts.begin();
     parts.append(parts.in, parts.zero, before);
-    parts.append(other, parts.zero, parts.all);
+    parts.append(other, parts.zero, taken);
     parts.append(parts.in, parts.sum(before, count), parts.all);
     return parts.made;
 }
@@ -91,13 +92,15 @@ Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count) {
 Slot emit_insert(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), before = e.value(2);
-    return emit_replaced(parts, other, before, parts.zero);
+    return emit_replaced(parts, other, before, parts.zero, parts.all);
 }
 
 Slot emit_replace(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), count = e.value(2);
-    return emit_replaced(parts, other, parts.difference(e.value(3), parts.one), count);
+    const bool is_matiec = e.call.place.dialect().vendor == Vendor::matiec;
+    return emit_replaced(parts, other, parts.difference(e.value(3), parts.one), count,
+                         is_matiec ? count : parts.all);
 }
 
 Slot emit_find(Emission& e) {
@@ -127,7 +130,8 @@ constexpr StandardFunction texts[] = {
     {"INSERT(IN1, IN2: STRING; P: ANY_INT): STRING", "IN1 with IN2 behind the character at P",
      Typing::texts, emit_insert},
     {"REPLACE(IN1, IN2: STRING; L, P: ANY_INT): STRING",
-     "IN1 with IN2 in place of L characters from the one at P on", Typing::texts, emit_replace},
+     "IN1 with IN2 in place of L characters from the one at P on; in MatIEC with at most L of IN2",
+     Typing::texts, emit_replace},
     {"S_CONV(IN: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN as what is wanted, as STRING_TO_INT(IN) and INT_TO_STRING(IN) give it",
      Typing::wanted, nullptr},
 };

@@ -52,8 +52,8 @@ void fill_member_of_union(Writing& w, Writing::Image& image, std::uint32_t at,
     fill_default(w, slots, 0, type);
     if (value) fill(w, slots, 0, type, *value);
     if (value || std::ranges::any_of(slots, [](std::uint64_t slot) { return slot != 0; }))
-        fill_packed(reinterpret_cast<std::byte*>(&image[at]), 0, type, member.name.place.dialect(),
-                    slots.data());
+        fill_packed(reinterpret_cast<std::byte*>(&image[at]), place_in_union(member), type,
+                    member.name.place.dialect(), slots.data());
 }
 
 }  // namespace

@@ -191,6 +191,7 @@ void LibraryNames::note(const Token& name) {
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
     if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
+    if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
 }
 
 /// A block of the catalogue that another one extends.
@@ -316,6 +317,10 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
     const auto is_of_twincat = [](const LibraryFile* f) { return f->library.starts_with("Tc2_"); };
     if (in_twincat && std::ranges::any_of(files, is_of_twincat))
         std::erase_if(files, std::not_fn(is_of_twincat));
+    const auto is_of_matiec = [&](const LibraryFile* f) {
+        return (f->library == "Beremiz") == of_matiec_.contains(name);
+    };
+    if (std::ranges::any_of(files, is_of_matiec)) std::erase_if(files, std::not_fn(is_of_matiec));
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
     if (in_twincat && is_of_twincat(files.front())) return files.front();

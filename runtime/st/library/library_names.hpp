@@ -66,7 +66,8 @@ class LibraryNames {
     const Catalog& catalog_;
     const Index& index_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
-    std::set<std::string_view> names_, of_twincat_, of_siemens_;  ///< as libraries write them
+    std::set<std::string_view> names_, of_twincat_, of_matiec_,
+        of_siemens_;                            ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
     std::set<std::string_view> said_;           ///< libraries, and names in full
     std::string_view reading_;                  ///< the library whose file is looked at

@@ -79,10 +79,13 @@ struct DialectName {
 /// `iec`, `codesys`, `twincat`, `scl`, `automation_studio`, `matiec`.
 std::span<const DialectName> dialect_names();
 
+/// It ends with `.st`.
+bool is_plain_text(std::string_view path);
+
 /// From now on users' files in `.st` of which SourceFile::read_as says nothing have the dialect of
-/// another ending, one of dialect_names(): by `--source-dialect`, for the whole process.
+/// an ending, one of dialect_names(): by `--source-dialect`, for the whole process.
 void read_plain_text_as(std::string_view ending);
-/// That ending, `.st` at first.
+/// That ending; empty at first, where each file has its own.
 std::string_view plain_text_ending();
 
 }  // namespace lineshaft::st

@@ -366,16 +366,23 @@ class Lexer {
         if (at_ != end_of_line && !is_whole) at_ = end_of_line;
     }
 
+    /// Of a text without its quote, so that there is no other mistake.
+    void refuse_open_text() {
+        const bool escapes = text_.substr(start_, at_ - start_).find("$'") != text_.npos;
+        out_.add(
+            code::character_of_no_word, place(start_, start_ + 1).mark(), "the text does not end",
+            escapes ? "it ends with \"'\"; $' is a quote in it, $$ is '$'" : "it ends with \"'\"");
+        const std::size_t last = text_.find_last_not_of(" \t\r", at_ - 1);
+        if (escapes || last <= start_ || text_[last] != ';')
+            return void(tokens_.mistakes.push_back(static_cast<std::uint32_t>(start_)));
+        at_ = std::max(text_.find_last_not_of("); \t\r", last), start_) + 1;
+    }
+
     void read_text() {
         ++at_;
         pass_text();
         const bool ends = peek() == '\'';
-        const bool escapes = text_.substr(start_, at_ - start_).find("$'") != text_.npos;
-        if (!ends)
-            fail(place(start_, start_ + 1), "the text does not end",
-                 escapes ? "it ends with \"'\"; $' is a quote in it, $$ is '$'"
-                         : "it ends with \"'\"");
-        if (ends) ++at_;
+        ends ? void(++at_) : refuse_open_text();
         Token& token = add(Word::text);
         token.text = token.text.substr(1, token.text.size() - (ends ? 2 : 1));
     }
@@ -476,19 +483,11 @@ class Lexer {
     Definitions defined_;            ///< by `{define}`
 };
 
-const Dialect& dialect_of_file(const SourceFile& file, SourceKind kind) {
-    if (kind == SourceKind::prelude) return scl;
-    const bool is_settled = file.read_as == ".st";  // whatever the text looks like
-    if (!file.read_as.empty()) return dialect_of(file.read_as, is_settled ? "" : file.text);
-    const Dialect& own = dialect_of(file.path, file.text);
-    return kind == SourceKind::library || &own != &iec ? own : dialect_of(plain_text_ending());
-}
-
 }  // namespace
 
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {
-    const Dialect& dialect = dialect_of_file(*file, kind);
+    const Dialect& dialect = dialect_of(*file, kind);
     return Lexer(std::make_shared<const Source>(Source{file, dialect, kind}), out).read();
 }
 

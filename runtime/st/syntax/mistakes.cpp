@@ -32,6 +32,9 @@ std::string habit_of_signs(const Cursor& p) {
     if (p.is(Word::comma) && p.last().word == Word::integer && before_number)
         return "write a decimal point: 1.5";
     if (p.says("step")) return "write BY";
+    if (p.says("downto"))
+        return p.next(2).word == Word::do_ ? fmt::format("write 'TO {} BY -1'", p.next().text)
+                                           : "write TO, and 'BY -1' before DO";
     const bool is_joined = p.last().word == Word::and_ || p.last().word == Word::or_;
     if (is_joined && p.here().word >= Word::less && p.here().word <= Word::unequal)
         return "repeat what is compared: a > 1 AND a < 5";
@@ -115,11 +118,75 @@ void refuse_reserved_name(Parsing& p) {
     p.unclosed_at = p.at;
 }
 
+void refuse_length(Parsing& p, const Token& type) {
+    const bool is_known = find_called(elementary_names, type.text);
+    fail(p, code::something_else_expected, type.place,
+         fmt::format("'{}' is not a type {}", type.text, is_known ? "with a length" : "of texts"),
+         fmt::format("{}an array ARRAY[0..9] OF {}",
+                     is_known ? "write " : "write STRING[20] or WSTRING[20], ", type.text));
+}
+
+bool refuse_simotion(Parsing& p) {
+    const bool is_unit =
+        p.is(Word::name) && p.says("unit") && p.is_name(1) && p.next(2).word == Word::semicolon;
+    if (!is_unit && !(p.is(Word::interface_) && !p.is_name(1) && p.next().first_in_line))
+        return false;
+    fail(p, code::not_supported, p.here().place,
+         "this is a unit of SIMOTION, whose INTERFACE and IMPLEMENTATION are not read",
+         "leave UNIT, INTERFACE, IMPLEMENTATION and the names in INTERFACE out, and keep what they "
+         "enclose");
+    while (!p.is(Word::end_of_file)) p.take();
+    return true;
+}
+
+void refuse_type_parameters(Parsing& p) {
+    tell(p, code::not_supported, p.here().place, "a unit with types as parameters is not supported",
+         "write one for each type that it is called with, or FUNCTIONs of one name with inputs of "
+         "different types");
+    while (!p.is(Word::greater) && !p.is(Word::end_of_file) && !p.next().first_in_line) p.take();
+    p.take();
+}
+
+void turn_modifiers(Tokens& tokens, Diagnostics& out) {
+    constexpr Word modifiers[] = {Word::private_,  Word::public_, Word::protected_, Word::internal_,
+                                  Word::abstract_, Word::final_,  Word::override_};
+    const auto is_modifier = [&](const Token& token) {
+        return std::ranges::find(modifiers, token.word) != std::end(modifiers);
+    };
+    auto& all = tokens.tokens;
+    for (auto first = all.begin(); first != all.end(); ++first) {
+        if (!first->first_in_line || !is_modifier(*first)) continue;
+        const auto word = std::find_if_not(first, all.end(), is_modifier);
+        const bool begins = find_pou(word->word) || word->word == Word::property_;
+        if (!begins || word->first_in_line || !is_name((word + 1)->word)) continue;
+        out.warn(code::something_else_expected, first->place.mark(),
+                 fmt::format("'{}' stands before {}", first->place.text(), shown(word->word)),
+                 fmt::format("write {} {}", shown(word->word), first->place.text()));
+        std::rotate(first, word, word + 1);
+        std::swap(first->first_in_line, (first + 1)->first_in_line);
+        first = word;
+    }
+}
+
 void refuse_comparison(Parsing& p) {
     tell(p, code::something_else_expected, p.here().place, "'=' compares and does not assign",
          "write ':='");
     p.take();
     parse_expression(p);
+    end_statement(p);
+}
+
+void refuse_returned(Parsing& p) {
+    const Place word = p.last().place, first = p.here().place;
+    parse_expression(p);
+    if (p.panic) return;
+    const Pou* pou = p.is_in_test || p.tree.pous.empty() ? nullptr : &p.tree.pous.back();
+    const std::string_view text = first.to(p.last().place).text();
+    const bool is_long = text.size() > 40 || text.find('\n') != text.npos;
+    tell(p, code::something_else_expected, word, "RETURN has no value",
+         pou && pou->result
+             ? fmt::format("write '{} := {}; RETURN;'", pou->name.text, is_long ? "..." : text)
+             : "assign it to a VAR_OUTPUT, and write 'RETURN;'");
     end_statement(p);
 }
 

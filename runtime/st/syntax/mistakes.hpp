@@ -19,6 +19,12 @@ bool refuse_unsupported(Parsing& p);
 
 /// A chart where nothing stays, up to the end of the block.
 void refuse_chart(Parsing& p);
+/// `UNIT a; INTERFACE ... IMPLEMENTATION ...` of SIMOTION, up to the end of the file.
+bool refuse_simotion(Parsing& p);
+/// `<T : ANY_NUM>` behind a function's name, which is skipped.
+void refuse_type_parameters(Parsing& p);
+/// `PUBLIC METHOD m` becomes `METHOD PUBLIC m`, which is told.
+void turn_modifiers(Tokens& tokens, Diagnostics& out);
 
 // In declarations.
 
@@ -31,11 +37,15 @@ void refuse_shared_place(Parsing& p);
 void refuse_statement(Parsing& p);
 /// A word of the language stands where a name is due: whatever uses it would be wrong too.
 void refuse_reserved_name(Parsing& p);
+/// `USTRING[20]`, `INT[3]`
+void refuse_length(Parsing& p, const Token& type);
 
 // In statements and expressions.
 
 /// `x = 1;` is meant as an assignment.
 void refuse_comparison(Parsing& p);
+/// The value in `RETURN n;`.
+void refuse_returned(Parsing& p);
 /// In a condition `x := 1` is meant as a comparison.
 void refuse_assignment(Parsing& p);
 /// `RUNG ... END_RUNG` of a network in LAD or FBD, an instruction list, a body that CoDeSys 2.3

@@ -190,7 +190,7 @@ std::string_view name_of_list(const Source& source) {
 /// A METHOD stands within another unit, or behind it; variables beside units are VAR_GLOBAL or VAR,
 /// which is the same there; a Test stands in a file of tests.
 void parse_declaration(Parsing& p) {
-    if (p.is(Word::end_of_file)) return;
+    if (p.is(Word::end_of_file) || refuse_simotion(p)) return;
     if (p.at_method()) return parse_late_method(p);
     if (p.at_pou() && !p.is(Word::method_)) {
         Pou* pou = parse_pou(p);
@@ -242,6 +242,7 @@ Pou* parse_pou(Parsing& p) {
     pou.name = is_operator ? p.take()
                            : expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
     pou.place = opener.place.to(pou.name.place);
+    if (p.is(Word::less)) refuse_type_parameters(p);
     if (p.accept(Word::colon)) parse_result(p, pou);
     if (p.panic) skip_line(p);
     if (pou.result) p.accept(Word::semicolon);

@@ -233,6 +233,14 @@ void parse_try(Parsing& p, Statement& statement) {
     close(p, Word::endtry_, opener);
 }
 
+/// In the line of a word that has none.
+bool begins_value(const Parsing& p) {
+    if (p.panic || p.here().first_in_line) return false;
+    const Word word = p.here().word;
+    return p.is_name() || word == Word::open || word == Word::minus || word == Word::not_ ||
+           (word >= Word::prefix && word <= Word::direct);
+}
+
 /// Jump_Stmt : ( 'EXIT' | 'CONTINUE' | 'RETURN' ) ';'
 /// `RETURN(n > 0);` of CODESYS leaves if that holds, `RETURN n > 0;` of SCL is `ENO := n > 0;
 /// RETURN;`.
@@ -255,13 +263,16 @@ void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
         jump = test;
         expect(p, Word::close);
     }
+    if (kind == Statement::Kind::return_ && begins_value(p)) return refuse_returned(p);
     to.push_back(jump);
     end_statement(p);
 }
 
+/// Within a CASE what stands in a line is one of its values.
 bool at_goto_label(const Parsing& p) {
     const Token& behind = p.next(2);
-    return p.is(Word::name) && p.here().first_in_line && p.next().word == Word::colon &&
+    return p.is(Word::name) && (p.here().first_in_line || p.cases == 0) &&
+           p.next().word == Word::colon &&
            (behind.first_in_line || behind.word == Word::semicolon || is_name(behind.word));
 }
 

@@ -32,11 +32,13 @@ void parse_array(Parsing& p, TypeText& type) {
     type.element = parse_type(p);
 }
 
-/// Struct_Decl : 'STRUCT' Var_Decl * 'END_STRUCT'
+/// Struct_Decl : 'STRUCT' 'OVERLAP' ? Var_Decl * 'END_STRUCT'
 /// Union_Decl : 'UNION' Var_Decl * 'END_UNION'
 void parse_structure(Parsing& p, TypeText& type, TypeText::Kind kind) {
     const Token opener = p.take();
     type.kind = kind;
+    type.overlaps = p.says("overlap") && !p.is_declared() && p.next().word != Word::at_;
+    if (type.overlaps) p.take();
     const Word end = kind == TypeText::Kind::union_ ? Word::end_union_ : Word::end_struct_;
     while (!p.panic && !p.is_spoiled && !is_end(p.here().word) && !p.is(Word::end_of_file) &&
            (!p.at_pou() || p.is_declared())) {
@@ -106,6 +108,8 @@ void parse_named_type(Parsing& p, TypeText& type) {
     if (is_text && has_length) {
         type.kind = TypeText::Kind::text;
         type.length = parse_length(p);
+    } else if (p.is(Word::open_bracket) && p.next().word != Word::open) {
+        refuse_length(p, type.name);
     } else if (p.is(Word::open_bracket) && p.next().word == Word::open) {
         type.kind =
             TypeText::Kind::enumeration;  // of an array's element: arguments of each FB_init

@@ -41,6 +41,17 @@ const NameMap<Word>& words() {
 
 }  // namespace
 
+const Dialect& dialect_of(const SourceFile& file, SourceKind kind) {
+    if (kind == SourceKind::prelude) return scl;
+    const auto said = [&](std::string_view ending) -> const Dialect& {
+        return dialect_of(ending, is_plain_text(ending) ? std::string_view() : file.text);
+    };
+    if (!file.read_as.empty()) return said(file.read_as);
+    const bool is_said = kind != SourceKind::library && is_plain_text(file.path);
+    return is_said && !plain_text_ending().empty() ? said(plain_text_ending())
+                                                   : dialect_of(file.path, file.text);
+}
+
 Mark Place::mark() const {
     return mark_of(source->file, begin, end);
 }

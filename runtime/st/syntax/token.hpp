@@ -20,6 +20,9 @@ enum class SourceKind : std::uint8_t {
     library,  ///< a vendor's, which comes with lineshaft
 };
 
+/// The dialect of a source. What a user says of it counts, whatever its text looks like.
+const Dialect& dialect_of(const SourceFile& file, SourceKind kind);
+
 /// A text that is compiled, and what was decided about it once, when it was read.
 struct Source {
     std::shared_ptr<const SourceFile> file;

@@ -209,6 +209,7 @@ struct TypeText {
     std::vector<struct Declaration*> members = {};
     std::vector<Argument> values = {};  ///< of an enumeration, with their numbers if given
     bool is_qualified_only = false;     ///< its values are named as `Type.value` alone
+    bool overlaps = false;              ///< STRUCT OVERLAP: members may share bytes
     bool is_strict = false;             ///< `{attribute 'strict'}`: it takes its own values alone
 };
 

@@ -176,7 +176,8 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         const std::uint64_t bits = member->type ? packed_bits(*member->type, dialect) : 0;
         if (bits == 0) return 0;
         const bool is_union = type.kind == Kind::union_;
-        end = is_union ? std::max(end, bits) : begin_of(*member->type, type, end, dialect) + bits;
+        end = is_union ? std::max(end, place_in_union(*member) + bits)
+                       : begin_of(*member->type, type, end, dialect) + bits;
     }
     return aligned(end, dialect.packs_as_s7 ? 16 : 8 * alignment_of(type));
 }
@@ -188,7 +189,7 @@ std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
 
 std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {
     std::uint64_t end = 0;
-    if (structure.kind == Kind::union_) return 0;
+    if (structure.kind == Kind::union_) return place_in_union(wanted);
     for (const Variable* member : structure.members) {
         const std::uint64_t begin = begin_of(*member->type, structure, end, dialect);
         if (member == &wanted) return begin;

@@ -75,6 +75,10 @@ std::uint64_t end_behind(std::uint64_t bits, const Type& member, const Type& who
     return begin_behind(bits, member, whole) + (member.is_one_bit ? 1 : 8 * bytes_of(member));
 }
 
+std::uint64_t place_in_union(const Variable& member) {
+    return 8 * std::uint64_t{member.address.byte} + member.address.bit;
+}
+
 std::uint64_t bytes_of(const Type& type) {
     std::uint64_t bytes = 0, bits = 0;
     switch (type.kind) {
@@ -98,7 +102,8 @@ std::uint64_t bytes_of(const Type& type) {
             return rounded_up(whole_bytes(bits), alignment_of(type));
         case Type::Kind::union_:
             for (const Variable* member : type.members)
-                if (member->type) bytes = std::max(bytes, bytes_of(*member->type));
+                if (member->type)
+                    bytes = std::max(bytes, place_in_union(*member) / 8 + bytes_of(*member->type));
             return rounded_up(bytes, alignment_of(type));
         case Type::Kind::block:
             return bytes_of_block(type);

@@ -145,6 +145,9 @@ std::uint64_t bytes_of(const Type& type);
 /// Bytes of which its place there is a multiple.
 std::uint64_t alignment_of(const Type& type);
 
+/// Where a member of a UNION begins [bits]: at 0, but of a STRUCT OVERLAP as AT says.
+std::uint64_t place_in_union(const Variable& member);
+
 /// Where a member of the structure or block begins that is behind so many bits, and the end of it
 /// [bits]. What is no BIT begins at a byte.
 std::uint64_t begin_behind(std::uint64_t bits, const Type& member, const Type& whole);
@@ -178,7 +181,7 @@ struct Variable {
     bool is_byte = false;
     int global = -1;
     int named = -1;  ///< an AXIS_REF that is to this global, a block of the program, all the time
-    ImageAddress address = {};     ///< in the process image
+    ImageAddress address = {};     ///< in the process image, or within its STRUCT OVERLAP
     bool is_direct = false;        ///< no variable: an address that code names
     Section pin = Section::local;  ///< `AT %I*`, `%Q*`: input or output of its block for programs
     Constant value = {};           ///< of a constant scalar

@@ -26,7 +26,7 @@ std::string real_text(double value, bool is_long) {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-void add_duration(Out to, std::int64_t nanoseconds) {
+void add_duration(Out to, std::int64_t nanoseconds, bool is_long) {
     constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
                                                                {3'600'000'000'000, "h"},
                                                                {60'000'000'000, "m"},
@@ -36,20 +36,25 @@ void add_duration(Out to, std::int64_t nanoseconds) {
                                                                {1, "ns"}};
     auto left = static_cast<std::uint64_t>(nanoseconds);
     if (nanoseconds < 0) left = 0 - left;
-    fmt::format_to(to, "T#{}{}", nanoseconds < 0 ? "-" : "", nanoseconds == 0 ? "0s" : "");
+    fmt::format_to(to, "{}#{}{}", is_long ? "LTIME" : "T", nanoseconds < 0 ? "-" : "",
+                   nanoseconds == 0 ? "0s" : "");
     for (const auto& [size, unit] : units) {
         if (left >= size) fmt::format_to(to, "{}{}", left / size, unit);
         left %= size;
     }
 }
 
-void add_date(Out to, Kind kind, std::int64_t since_1970) {
+void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
     using namespace std::chrono;
     const sys_time<nanoseconds> moment{nanoseconds(since_1970)};
     const auto midnight = floor<days>(moment);
     const year_month_day day(midnight);
     const hh_mm_ss clock(moment - midnight);
-    fmt::format_to(to, "{}", kind == Kind::date ? "D#" : kind == Kind::clock ? "TOD#" : "DT#");
+    const char* const of_date = is_long ? "LDATE" : "D";
+    fmt::format_to(to, "{}#",
+                   kind == Kind::date    ? of_date
+                   : kind == Kind::clock ? (is_long ? "LTOD" : "TOD")
+                                         : (is_long ? "LDT" : "DT"));
     if (kind != Kind::clock)
         fmt::format_to(to, "{:04}-{:02}-{:02}", static_cast<int>(day.year()),
                        static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
@@ -105,11 +110,11 @@ std::string time_literal(std::int64_t nanoseconds) {
     return literal(Kind::time, nanoseconds);
 }
 
-void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds) {
+void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds, bool is_long) {
     if (kind == Kind::time)
-        add_duration(std::back_inserter(to), nanoseconds);
+        add_duration(std::back_inserter(to), nanoseconds, is_long);
     else
-        add_date(std::back_inserter(to), kind, nanoseconds);
+        add_date(std::back_inserter(to), kind, nanoseconds, is_long);
 }
 
 std::optional<Wide> read_time(std::string_view text, Kind kind) {

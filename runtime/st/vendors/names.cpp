@@ -96,16 +96,17 @@ constexpr Beginning of_codesys[] = {{"ctu", "data_type", 7},
 /// Its CTUD counts in INT.
 constexpr Beginning of_automation_studio[] = {{"ctu", "data_type", 7}, {"ctd", "data_type", 7}};
 
-/// Its counters stop where the standard's program text of them does.
+/// Its counters stop, and its timers answer, where the standard's program text of them does.
 constexpr Beginning of_matiec[] = {
-    {"ctu", "stops_at_preset", 1},       {"ctd", "stops_at_preset", 1},
-    {"ctud", "stops_at_preset", 1},      {"ctu_dint", "stops_at_preset", 1},
-    {"ctd_dint", "stops_at_preset", 1},  {"ctud_dint", "stops_at_preset", 1},
-    {"ctu_lint", "stops_at_preset", 1},  {"ctd_lint", "stops_at_preset", 1},
-    {"ctud_lint", "stops_at_preset", 1}, {"ctu_udint", "stops_at_preset", 1},
-    {"ctd_udint", "stops_at_preset", 1}, {"ctud_udint", "stops_at_preset", 1},
-    {"ctu_ulint", "stops_at_preset", 1}, {"ctd_ulint", "stops_at_preset", 1},
-    {"ctud_ulint", "stops_at_preset", 1}};
+    {"ctu", "stops_at_preset", 1},        {"ctd", "stops_at_preset", 1},
+    {"ctud", "stops_at_preset", 1},       {"ctu_dint", "stops_at_preset", 1},
+    {"ctd_dint", "stops_at_preset", 1},   {"ctud_dint", "stops_at_preset", 1},
+    {"ctu_lint", "stops_at_preset", 1},   {"ctd_lint", "stops_at_preset", 1},
+    {"ctud_lint", "stops_at_preset", 1},  {"ctu_udint", "stops_at_preset", 1},
+    {"ctd_udint", "stops_at_preset", 1},  {"ctud_udint", "stops_at_preset", 1},
+    {"ctu_ulint", "stops_at_preset", 1},  {"ctd_ulint", "stops_at_preset", 1},
+    {"ctud_ulint", "stops_at_preset", 1}, {"ton", "answers_later", 1},
+    {"tof", "answers_later", 1},          {"tp", "answers_later", 1}};
 
 std::span<const Beginning> beginnings_of(Vendor vendor) {
     switch (vendor) {

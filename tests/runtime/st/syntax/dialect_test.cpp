@@ -43,8 +43,9 @@ TEST_CASE("Structured Text: a source is of the prelude by who reads it, not by i
 }
 
 TEST_CASE("Structured Text: a dialect is named for what the ending .st does not say", "[st]") {
-    const auto dialect = [](std::string read_as, st::SourceKind kind) {
-        const SourceFile file{.path = "a.st", .text = "END", .read_as = std::move(read_as)};
+    const auto dialect = [](std::string read_as, st::SourceKind kind, std::string text = "END") {
+        const SourceFile file{
+            .path = "a.st", .text = std::move(text), .read_as = std::move(read_as)};
         Diagnostics out;
         const auto read = st::read_tokens(std::make_shared<const SourceFile>(file), out, kind);
         return &read.tokens[0].place.dialect();
@@ -59,6 +60,10 @@ TEST_CASE("Structured Text: a dialect is named for what the ending .st does not 
         CHECK(dialect("", tests) == own);
         CHECK(dialect(".scl", program) == &st::scl);
         CHECK(dialect("", library) == &st::iec);
-        st::read_plain_text_as(".st");
+        CHECK(dialect("", program, "{attribute 'qualified_only'}") == own);
+        CHECK(dialect("", library, "{attribute 'qualified_only'}") == &st::codesys);
+        st::read_plain_text_as("");
+        CHECK(dialect("", program) == &st::iec);
+        CHECK(dialect("", program, "{attribute 'qualified_only'}") == &st::codesys);
     }
 }
