@@ -199,6 +199,23 @@ def check_configuration():
     assert (work / "placed.csv").read_text().splitlines()[1].startswith("0,0,1,7,"), "lamp is no bit of speed"
 
 
+def check_texts_of_any_name():
+    """Structured Text is known by what it begins with, where the file's name does not say it; in a folder that has nothing else."""
+    unit = "(* of an editor *)\nPROGRAM {}\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n"
+    for name in ("a.iecst", "b.iec", "c.txt", "d.scl.txt", "e.il"):
+        write(f"any_name/{name}/{name}", unit.format("Main"))
+        assert run("check", f"any_name/{name}/{name}").startswith("ok"), name
+        run("new", f"of_{name[0]}", "--from", f"any_name/{name}")
+        assert "Main: {type: Main, task: main}" in (work / f"of_{name[0]}.yaml").read_text(), name
+        run("run", "--quiet", f"of_{name[0]}.yaml")
+    write("any_mixed/main.st", unit.format("Main"))
+    write("any_mixed/old.txt", unit.format("Main"))
+    write("any_mixed/notes.txt", "Type what you see.\n")
+    assert run("check", "any_mixed").startswith("ok"), "a copy beside it"
+    write("any_notes/notes.txt", "Program the clock first.\n")
+    assert "there is no source of a controller" in run("check", "any_notes", code=2)
+
+
 CHART = """PROGRAM PLC_PRG
 VAR_INPUT reset, init : BOOL; END_VAR
 VAR machine : Machine; END_VAR
@@ -1097,6 +1114,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_inherited()
     check_page()
     check_configuration()
+    check_texts_of_any_name()
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()

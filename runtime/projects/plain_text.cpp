@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 
-#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft::projects {
@@ -13,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_plain(const SourceFile& source) {
-    return source.read_as.empty() && lower(fs::path(source.path).extension().string()) == ".st";
+    return source.read_as.empty() && st::is_plain_text(source.path);
 }
 
 std::shared_ptr<const SourceFile> read_as(const SourceFile& source, std::string_view ending) {
