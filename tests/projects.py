@@ -257,7 +257,7 @@ def check_chart_flags():
 
 def check_older_forms():
     """CoDeSys 2.3 exports pictures and open addresses beside its units; B&R declares what is elsewhere, by any name."""
-    write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
+    write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR x AT %Q* : BOOL; n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
           "axis : MpAxis := (0); END_VAR\n(* @END_DECLARATION := '0' *)\nn[1] := m[2];\nEND_PROGRAM\nVISUALISATION View _VISU_TYPES : 1,1\n"
           "_TEXT : '$R$N', ''not of the language {\nEND_VISUALISATION\nVAR_CONFIG\n  PLC_PRG.x AT %QX0.0 : BOOL;\nEND_VAR\n"
           "FUNCTION Twice : INT\nVAR_INPUT x : INT; END_VAR\nTwice := 2 * x;\nEND_FUNCTION\n")
