@@ -222,10 +222,12 @@ RESOURCE R1 ON CPU
  TASK Fast(INTERVAL := T#10ms, PRIORITY := 1);
  TASK Named(INTERVAL := CYCLE, PRIORITY := 2);
  TASK Event(SINGLE := go, PRIORITY := 0);
+ TASK Pressed(SINGLE := %IX7.0, PRIORITY := 0);
  PROGRAM P1 WITH Fast : Main(gain := g, on := %IX0.1, cnt => total, lamp => %QX0.3);
  PROGRAM P2 WITH Named : Count(own WITH Fast);
  PROGRAM P3 WITH Event : Count;
  PROGRAM P4 : Count;
+ PROGRAM P5 WITH Pressed : Count;
 END_RESOURCE
 RESOURCE R2 ON CPU
  TASK Fast(INTERVAL := T#50ms, PRIORITY := 1);
@@ -240,17 +242,18 @@ def check_configured_programs():
     """Programs of a CONFIGURATION are connected; events, constants, what has no task and tasks of one name are tasks of their own."""
     write("cell.st", CELL)
     said = run("new", "cell", "--from", "cell.st")
-    assert "cell.st:25:32: warning[L0903]: 'own' runs where Count calls it, not in the task 'Fast'" in said, said
+    assert "cell.st:26:32: warning[L0903]: 'own' runs where Count calls it, not in the task 'Fast'" in said, said
     text = (work / "cell.yaml").read_text()
     for line in ("  Fast: {every: 10 ms, priority: 3}", "  Named: {every: 20 ms, priority: 2}", "  Event: {on: [globals.go], priority: 4}",
                  "  background: {every: 10 ms, priority: 1}  # without a TASK a controller runs it again and again",
                  "  R2_Fast: {every: 50 ms, priority: 3}", "  P1: {type: R1.P1, task: Fast}",
                  "  P2: {type: Count, task: Named}  # 'own' is of the task 'Fast' in the project", "  P3: {type: Count, task: Event}",
-                 "  P4: {type: Count, task: background}", "  P1_R2_Fast: {type: Count, task: R2_Fast}"):
+                 "  P4: {type: Count, task: background}", "  Pressed: {on: [inputs.IX7_0], priority: 4}", "  IX7_0: false  # starts the task Pressed",
+                 "  P1_R2_Fast: {type: Count, task: R2_Fast}"):
         assert line + "\n" in text, text
-    write("cell.yaml", text + "stimulus:\n  - {at: 105 ms, set: {inputs.IX0_1: true}}\nforce:\n  - {set: {globals.go: true}, from: 105 ms}\nexpect:\n  - {at: 95 ms, globals.total: 30}\n"
+    write("cell.yaml", text + "stimulus:\n  - {at: 105 ms, set: {inputs.IX0_1: true, inputs.IX7_0: true}}\nforce:\n  - {set: {globals.go: true}, from: 105 ms}\nexpect:\n  - {at: 95 ms, globals.total: 30}\n"
           '  - {at: 95 ms, P1.lamp: false}\n  - {at: 95 ms, "%QX2.0": true}\n  - {at: 995 ms, "%QX0.3": true}\n  - {at: 995 ms, P1.lamp: true}\n'
-          "  - {at: 995 ms, P2.n: 50}\n  - {at: 995 ms, P3.n: 1}\n  - {at: 995 ms, P4.n: 100}\n  - {at: 995 ms, P1_R2_Fast.n: 20}\n")
+          "  - {at: 995 ms, P2.n: 50}\n  - {at: 995 ms, P3.n: 1}\n  - {at: 995 ms, P5.n: 1}\n  - {at: 995 ms, P4.n: 100}\n  - {at: 995 ms, P1_R2_Fast.n: 20}\n")
     said = run("run", "--quiet", "cell.yaml")
     assert "CONFIGURATION" not in said, "all its programs run"
     write("part.yaml", "lineshaft: 1\nsources: cell.st\ntasks: {t: {every: 10 ms}}\nblocks: {a: {type: R1.P1, task: t}, b: {type: Count, task: t}}\n"
@@ -259,7 +262,7 @@ def check_configured_programs():
     assert "write globals.total" in said, said
     write("part.yaml", (work / "part.yaml").read_text().replace("total", "globals.total"))
     said = run("check", "part.yaml")
-    assert said.count("no block runs this program of the CONFIGURATION, a 'Count'") == 3, said
+    assert said.count("no block runs this program of the CONFIGURATION, a 'Count'") == 4, said
 
 
 def check_tasks_of_plcopen():

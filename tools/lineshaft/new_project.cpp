@@ -204,9 +204,11 @@ std::vector<Field> addresses_of(const st::Library& library) {
     return {image->fields.begin(), image->fields.end()};
 }
 
-/// An input from outside for each address of the area I: `%IX0.3` is inputs.IX0_3.
-std::string inputs_text(const std::vector<Field>& addresses) {
+/// An input from outside for each address of the area I: `%IX0.3` is inputs.IX0_3. One that starts
+/// a task may be named nowhere else.
+std::string inputs_text(const std::vector<Field>& addresses, const std::vector<NewTask>& tasks) {
     std::string inputs, wires;
+    std::set<std::string> names;
     for (const Field& field : addresses) {
         const bool is_number = field.unit.empty();
         if (field.direction != Direction::input || !field.name.starts_with("%I") || !is_number)
@@ -216,12 +218,18 @@ std::string inputs_text(const std::vector<Field>& addresses) {
         const std::string note =
             field.doc.empty() ? ""
                               : fmt::format("  # {}", field.doc.substr(0, field.doc.find('\n')));
+        names.insert("inputs." + name);
         inputs += fmt::format("  {}: {}{}\n", name, value, note);
         wires += fmt::format("  \"{}\": inputs.{}\n", field.name, name);
     }
+    for (const NewTask& task : tasks)
+        if (task.on.starts_with("inputs.") && names.insert(task.on).second)
+            inputs += fmt::format("  {}: false  # starts the task {}\n",
+                                  task.on.substr(task.on.find('.') + 1), task.name);
     if (inputs.empty()) return {};
+    if (!wires.empty()) wires.insert(0, "io:\n");
     return "inputs:                          # stimuli change them: lineshaft form stimulus\n" +
-           inputs + "io:\n" + wires;
+           inputs + wires;
 }
 
 /// Addresses after what a program names itself, outputs before all others.
@@ -371,7 +379,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "#   lineshaft check {0}.yaml{1}\n"
         "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}{4}run: {{for: 1 s}}\n",
         name, include_option(path, file), sources_text(*chosen, file), dialect_text(),
-        text_of(project, tasks, blocks) + inputs_text(addresses));
+        text_of(project, tasks, blocks) + inputs_text(addresses, tasks));
     std::vector<std::string> signals = motions_of(blocks);
     const bool moves = !signals.empty();
     std::ranges::move(signals_of(*library, programs.front(), moves), std::back_inserter(signals));

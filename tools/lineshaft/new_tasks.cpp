@@ -51,8 +51,10 @@ bool is_taken(const projects::ProjectTask& task) {
     return task.every > 0 || !task.single.text.empty() || task.counts_always;
 }
 
-/// Of a variable that stands in a list, or of an address.
+/// Of a variable that stands in a list, or of an address, which is an input where it is of area I.
 std::string signal_of(std::string_view variable) {
+    if (lower(variable).starts_with("%i"))
+        return fmt::format("inputs.{}", plain_name(variable.substr(1)));
     if (variable.starts_with('%')) return fmt::format("\"{}\"", variable);
     return fmt::format("globals.{}", variable.substr(variable.rfind('.') + 1));
 }
