@@ -342,6 +342,117 @@ def check_unread_bodies():
     assert "the body of 'P' is drawn (LISP), which is not read" in told, told
 
 
+CELL = """PROGRAM Main
+VAR_INPUT gain : INT; on : BOOL; END_VAR
+VAR_OUTPUT cnt : INT; lamp : BOOL; END_VAR
+VAR start : INT; lit AT %Q* : BOOL; END_VAR
+cnt := cnt + gain; lamp := on; lit := start = 42;
+END_PROGRAM
+FUNCTION_BLOCK Part
+VAR_OUTPUT n : INT; END_VAR
+n := n + 1;
+END_FUNCTION_BLOCK
+PROGRAM Count
+VAR_OUTPUT n : INT; END_VAR
+VAR own : Part; END_VAR
+n := n + 1;
+own();
+END_PROGRAM
+CONFIGURATION Cell
+VAR_GLOBAL total : INT; g : INT := 3; go : BOOL; END_VAR
+VAR_GLOBAL CONSTANT CYCLE : TIME := T#20ms; END_VAR
+RESOURCE R1 ON CPU
+ TASK Fast(INTERVAL := T#10ms, PRIORITY := 1);
+ TASK Named(INTERVAL := CYCLE, PRIORITY := 2);
+ TASK Event(SINGLE := go, PRIORITY := 0);
+ TASK Pressed(SINGLE := %IX7.0, PRIORITY := 0);
+ PROGRAM P1 WITH Fast : Main(gain := g, on := %IX0.1, cnt => total, lamp => %QX0.3);
+ PROGRAM P2 WITH Named : Count(own WITH Fast);
+ PROGRAM P3 WITH Event : Count;
+ PROGRAM P4 : Count;
+ PROGRAM P5 WITH Pressed : Count;
+END_RESOURCE
+RESOURCE R2 ON CPU
+ TASK Fast(INTERVAL := T#50ms, PRIORITY := 1);
+ PROGRAM P1 WITH Fast : Count;
+END_RESOURCE
+VAR_CONFIG R1.P1.start : INT := 42; R1.P1.lit AT %QX2.0 : BOOL; END_VAR
+END_CONFIGURATION
+"""
+
+
+def check_configured_programs():
+    """Programs of a CONFIGURATION are connected; events, constants, what has no task and tasks of one name are tasks of their own."""
+    write("cell.st", CELL)
+    said = run("new", "cell", "--from", "cell.st")
+    assert "cell.st:26:32: warning[L0903]: 'own' runs where Count calls it, not in the task 'Fast'" in said, said
+    text = (work / "cell.yaml").read_text()
+    for line in ("  Fast: {every: 10 ms, priority: 3}", "  Named: {every: 20 ms, priority: 2}", "  Event: {on: [globals.go], priority: 4}",
+                 "  background: {every: 10 ms, priority: 1}  # without a TASK a controller runs it again and again",
+                 "  R2_Fast: {every: 50 ms, priority: 3}", "  P1: {type: R1.P1, task: Fast}",
+                 "  P2: {type: Count, task: Named}  # 'own' is of the task 'Fast' in the project", "  P3: {type: Count, task: Event}",
+                 "  P4: {type: Count, task: background}", "  Pressed: {on: [inputs.IX7_0], priority: 4}", "  IX7_0: false  # starts the task Pressed",
+                 "  P1_R2_Fast: {type: Count, task: R2_Fast}"):
+        assert line + "\n" in text, text
+    write("cell.yaml", text + "stimulus:\n  - {at: 105 ms, set: {inputs.IX0_1: true, inputs.IX7_0: true}}\nforce:\n  - {set: {globals.go: true}, from: 105 ms}\nexpect:\n  - {at: 95 ms, globals.total: 30}\n"
+          '  - {at: 95 ms, P1.lamp: false}\n  - {at: 95 ms, "%QX2.0": true}\n  - {at: 995 ms, "%QX0.3": true}\n  - {at: 995 ms, P1.lamp: true}\n'
+          "  - {at: 995 ms, P2.n: 50}\n  - {at: 995 ms, P3.n: 1}\n  - {at: 995 ms, P5.n: 1}\n  - {at: 995 ms, P4.n: 100}\n  - {at: 995 ms, P1_R2_Fast.n: 20}\n")
+    said = run("run", "--quiet", "cell.yaml")
+    assert "CONFIGURATION" not in said, "all its programs run"
+    write("part.yaml", "lineshaft: 1\nsources: cell.st\ntasks: {t: {every: 10 ms}}\nblocks: {a: {type: R1.P1, task: t}, b: {type: Count, task: t}}\n"
+          "run: {for: 20 ms}\nexpect: [{at: end, total: 6}]\n")
+    said = run("check", "part.yaml", code=2)
+    assert "write globals.total" in said, said
+    write("part.yaml", (work / "part.yaml").read_text().replace("total", "globals.total"))
+    said = run("check", "part.yaml")
+    assert said.count("no block runs this program of the CONFIGURATION, a 'Count'") == 4, said
+
+
+def check_tasks_of_plcopen():
+    """What starts a task of PLCopen XML, programs beside its tasks, and several of one PROGRAM by their own names."""
+    pou = '<pou name="P" pouType="program"><interface><localVars><variable name="n"><type><INT/></type></variable></localVars></interface>' + st("n := n + 1;") + "</pou>"
+    write("started.xml", f'<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader productName="Beremiz"/><types><dataTypes/><pous>{pou}'
+          '</pous></types><instances><configurations><configuration name="c"><resource name="r"><task name="quick" priority="0" interval="T#5ms">'
+          '<pouInstance name="one" typeName="P"/></task><task name="event" priority="1" single="go"><pouInstance name="two" typeName="P"/></task>'
+          '<pouInstance name="three" typeName="P"/><globalVars><variable name="go"><type><BOOL/></type></variable></globalVars></resource></configuration>'
+          "</configurations></instances></project>\n")
+    run("new", "started", "--from", "started.xml")
+    text = (work / "started.yaml").read_text()
+    for line in ("quick: {every: 5 ms, priority: 3}", "event: {on: [globals.go], priority: 2}", "background: {every: 5 ms, priority: 1}",
+                 "one: {type: P, task: quick}", "two: {type: P, task: event}", "three: {type: P, task: background}"):
+        assert line in text, text
+    write("started.yaml", text + "expect: [{at: end, one.n: 201}, {at: end, two.n: 0}, {at: end, three.n: 201}]\n")
+    run("run", "--quiet", "started.yaml")
+
+
+def check_programs_without_tasks():
+    """Where no task is said, what another PROGRAM calls runs there alone."""
+    write("calling.st", "PROGRAM Sub\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\nPROGRAM PLC_PRG\nVAR seen : INT; END_VAR\nSub();\n"
+          "seen := Sub.n;\nEND_PROGRAM\nPROGRAM Other\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n")
+    run("new", "calling", "--from", "calling.st")
+    text = (work / "calling.yaml").read_text()
+    assert "  Other: {type: Other, task: main}" in text and "Sub:" not in text, text
+    write("calling.yaml", text + "expect: [{at: end, PLC_PRG.seen: 101}]\n")
+    run("run", "--quiet", "calling.yaml")
+
+
+def check_texts_of_any_name():
+    """Structured Text is known by what it begins with, where the file's name does not say it; in a folder that has nothing else."""
+    unit = "(* of an editor *)\nPROGRAM {}\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n"
+    for name in ("a.iecst", "b.iec", "c.txt", "d.scl.txt", "e.il"):
+        write(f"any_name/{name}/{name}", unit.format("Main"))
+        assert run("check", f"any_name/{name}/{name}").startswith("ok"), name
+        run("new", f"of_{name[0]}", "--from", f"any_name/{name}")
+        assert "Main: {type: Main, task: main}" in (work / f"of_{name[0]}.yaml").read_text(), name
+        run("run", "--quiet", f"of_{name[0]}.yaml")
+    write("any_mixed/main.st", unit.format("Main"))
+    write("any_mixed/old.txt", unit.format("Main"))
+    write("any_mixed/notes.txt", "Type what you see.\n")
+    assert run("check", "any_mixed").startswith("ok"), "a copy beside it"
+    write("any_notes/notes.txt", "Program the clock first.\n")
+    assert "there is no source of a controller" in run("check", "any_notes", code=2)
+
+
 CHART = """PROGRAM PLC_PRG
 VAR_INPUT reset, init : BOOL; END_VAR
 VAR machine : Machine; END_VAR
@@ -383,7 +494,7 @@ def check_chart_flags():
 
 def check_older_forms():
     """CoDeSys 2.3 exports pictures and open addresses beside its units; B&R declares what is elsewhere, by any name."""
-    write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
+    write("old/ALL.EXP", "(* @NESTEDCOMMENTS := 'Yes' *)\nPROGRAM PLC_PRG\nVAR x AT %Q* : BOOL; n : ARRAY[1..3] OF INT := 3(7); m : ARRAY[1..2] OF INT := 0; "
           "axis : MpAxis := (0); END_VAR\n(* @END_DECLARATION := '0' *)\nn[1] := m[2];\nEND_PROGRAM\nVISUALISATION View _VISU_TYPES : 1,1\n"
           "_TEXT : '$R$N', ''not of the language {\nEND_VISUALISATION\nVAR_CONFIG\n  PLC_PRG.x AT %QX0.0 : BOOL;\nEND_VAR\n"
           "FUNCTION Twice : INT\nVAR_INPUT x : INT; END_VAR\nTwice := 2 * x;\nEND_FUNCTION\n")
@@ -1405,6 +1516,10 @@ with tempfile.TemporaryDirectory() as temporary:
     check_tasks_of_codesys()
     check_codesys_export()
     check_unread_bodies()
+    check_configured_programs()
+    check_texts_of_any_name()
+    check_programs_without_tasks()
+    check_tasks_of_plcopen()
     check_chart_flags()
     check_older_forms()
     check_binary_libraries()

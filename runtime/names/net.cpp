@@ -47,8 +47,10 @@ std::optional<Signal> Net::find(const Reader& read, const Node& node, std::strin
     if (text.starts_with('%')) return find_address(read, node, text);
     const auto name = split_signal(text);
     if (!name) {
+        const std::string listed = name_of_listed(*this, {}, text);
         read.fail(code::unknown_signal, node, fmt::format("'{}' is not a signal", text),
-                  std::ranges::find(inputs, text, &InputNode::name) != inputs.end()
+                  !listed.empty() ? listed
+                  : std::ranges::find(inputs, text, &InputNode::name) != inputs.end()
                       ? fmt::format("did you mean 'inputs.{}'?", text)
                       : "a signal is written block.port, inputs.name or outputs.name");
         return {};

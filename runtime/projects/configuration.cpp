@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/cursor.hpp"
 
@@ -18,56 +23,113 @@ Name name_of(const Token& token) {
     return {std::string(token.text), token.place.mark()};
 }
 
-/// `TASK slow(INTERVAL := T#20ms, PRIORITY := 1);`
-ProjectTask read_task(st::Cursor& p) {
+/// How long a variable is that a task names as its interval, as its declaration in the same file
+/// says; 0: it does not.
+std::int64_t interval_of_variable(const st::Cursor& p, std::string_view name) {
+    for (std::size_t i = 0; i + 3 < p.tokens.size(); ++i) {
+        const bool is_it = st::same_name(p.tokens[i].text, name) &&
+                           p.tokens[i + 1].word == Word::colon &&
+                           p.tokens[i + 3].word == Word::assign;
+        if (!is_it) continue;
+        std::size_t end = i + 4;
+        while (end + 1 < p.tokens.size() && p.tokens[end + 1].word != Word::semicolon) ++end;
+        return interval_of(p.tokens[i + 4].place.to(p.tokens[end].place).text());
+    }
+    return 0;
+}
+
+/// Up to what follows a value, without it.
+std::string_view take_value(st::Cursor& p) {
+    const st::Place begin = p.here().place;
+    while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
+    return begin.to(p.last().place).text();
+}
+
+/// `TASK slow(INTERVAL := T#20ms, PRIORITY := 1);`, or `SINGLE := go` for what starts it.
+ProjectTask read_task(st::Cursor& p, const std::string& resource) {
     p.take();
-    ProjectTask made{.name = name_of(p.take())};
+    ProjectTask made{.name = name_of(p.take()), .resource = resource, .counts_always = true};
     while (!p.is(Word::close) && !p.is(Word::semicolon) && !p.is(Word::end_of_file)) {
         const Token key = p.take();
         if (!p.accept(Word::assign)) continue;
-        const st::Place begin = p.here().place;
-        while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
-        const std::string_view value = begin.to(p.last().place).text();
-        if (st::same_name(key.text, "interval")) made.every = interval_of(value);
-        if (st::same_name(key.text, "single") || st::same_name(key.text, "event"))
-            made.event = value;
+        const Token first = p.here();
+        const std::string_view value = take_value(p);
+        if (st::same_name(key.text, "interval")) {
+            made.every = interval_of(value);
+            if (made.every == 0) made.every = interval_of_variable(p, value);
+        }
+        if (st::same_name(key.text, "single") && !st::same_name(value, "false"))
+            made.single = {std::string(value), first.place.mark()};
+        if (st::same_name(key.text, "event")) made.event = value;
         if (st::same_name(key.text, "priority"))
             std::from_chars(value.data(), value.data() + value.size(), made.priority);
     }
     return made;
 }
 
-/// `Main(limit := 5, done => lamp)`: what is given is a literal, as a program's file has it.
+/// `Main(limit := 5, done => lamp, motor WITH quick)`: what is given is a literal, as a program's
+/// file has it; the compiler connects the others.
 void read_arguments(st::Cursor& p, TaskProgram& to) {
     if (!p.accept(Word::open)) return;
     while (!p.is(Word::close) && !p.is(Word::semicolon) && !p.is(Word::end_of_file)) {
         const Token key = p.take();
+        if (p.is_name() && p.says("with") && p.is_name(1)) {
+            p.take();
+            to.apart.emplace_back(name_of(key), p.take().text);
+        }
         if (!p.accept(Word::assign)) continue;
-        const st::Place begin = p.here().place;
-        while (!p.is(Word::comma) && !p.is(Word::close) && !p.is(Word::end_of_file)) p.take();
-        const std::string value = lower(begin.to(p.last().place).text());
+        const std::string value = lower(take_value(p));
         const bool is_number = value.find_first_not_of("-.0123456789") == value.npos;
         if (is_number || value == "true" || value == "false")
             to.given.emplace_back(key.text, value);
     }
 }
 
+/// What runs the program of a RESOURCE; without a task again and again.
+ProjectTask& task_of(std::vector<ProjectTask>& tasks, const Token* name,
+                     const std::string& resource) {
+    const auto find = [&](bool here) {
+        return std::ranges::find_if(tasks, [&](const ProjectTask& one) {
+            return (!here || one.resource == resource) && one.is_background == !name &&
+                   (!name || st::same_name(one.name.text, name->text));
+        });
+    };
+    auto found = find(true);
+    if (found == tasks.end()) found = name ? find(false) : found;
+    if (found != tasks.end()) return *found;
+    return tasks.emplace_back(ProjectTask{.name = name ? name_of(*name) : Name{},
+                                          .resource = resource,
+                                          .is_background = !name,
+                                          .counts_always = true});
+}
+
 /// `PROGRAM main WITH slow : Main(limit := 5);`
-void read_program(st::Cursor& p, std::vector<ProjectTask>& tasks) {
+void read_program(st::Cursor& p, const std::string& resource, const std::string& configuration,
+                  std::vector<ProjectTask>& tasks) {
     p.take();
     while (p.is(Word::retain_) || p.is(Word::non_retain_)) p.take();
     const std::string instance(p.take().text);
-    if (!p.says("with")) return;
-    p.take();
-    const Token task = p.take();
+    const bool has_task = p.says("with");
+    if (has_task) p.take();
+    const Token task = has_task ? p.take() : p.here();
     if (!p.accept(Word::colon)) return;
-    const auto is_its = [&](const ProjectTask& one) {
-        return st::same_name(one.name.text, task.text);
-    };
-    const auto found = std::ranges::find_if(tasks, is_its);
-    if (found == tasks.end()) return;
-    TaskProgram& program = found->programs.emplace_back(TaskProgram{name_of(p.take()), instance});
+    TaskProgram program{name_of(p.take())};
+    program.instance = instance;
+    const std::string& around = resource.empty() ? configuration : resource;
+    program.path = around.empty() ? instance : around + "." + instance;
     read_arguments(p, program);
+    task_of(tasks, has_task ? &task : nullptr, resource).programs.push_back(std::move(program));
+}
+
+/// A block of a program that another task runs stays in its program here.
+void warn_of_parts(const Reading& to, const std::vector<ProjectTask>& tasks) {
+    for (const ProjectTask& task : tasks)
+        for (const TaskProgram& program : task.programs)
+            for (const auto& [part, name] : program.apart)
+                to.out.warn(code::not_supported, part.mark,
+                            fmt::format("'{}' runs where {} calls it, not in the task '{}'",
+                                        part.text, program.text, name),
+                            "let a PROGRAM of that task have it, and call it there");
 }
 
 /// `PLC_PRG();` and its like, up to END_TASK.
@@ -112,7 +174,9 @@ void read_tasks_of_export(const Reading& to, const SourceFile& source) {
             p.take();
             continue;
         }
-        ProjectTask task = read_task(p);
+        ProjectTask task = read_task(p, {});
+        task.counts_always = false;
+        if (task.event.empty()) task.event = std::exchange(task.single, {}).text;
         task.is_free = task.every == 0 && task.event.empty();
         read_calls(p, task);
         const auto is_known = [&](const ProjectTask& other) {
@@ -157,15 +221,24 @@ void read_configuration(const Reading& to, const std::shared_ptr<const SourceFil
     st::Cursor p{st::read_tokens(source, unread)};
     while (!p.is(Word::end_of_file) && !p.is(Word::configuration_)) p.take();
     std::vector<ProjectTask> tasks;
+    std::string configuration, resource;
+    bool is_within = false;
     while (!p.is(Word::end_of_file)) {
-        if (p.is_name() && p.says("task") && p.is_name(1) && p.next(2).word == Word::open)
-            tasks.push_back(read_task(p));
-        else if (p.is(Word::program_))
-            read_program(p, tasks);
-        else
+        if (p.is(Word::configuration_) || p.says("end_configuration"))
+            is_within = p.is(Word::configuration_);
+        if (p.is_name() && p.says("task") && p.is_name(1) && p.next(2).word == Word::open) {
+            tasks.push_back(read_task(p, resource));
+        } else if (p.is(Word::program_) && is_within) {
+            read_program(p, resource, configuration, tasks);
+        } else {
+            if (p.is(Word::configuration_) && p.is_name(1)) configuration = p.next().text;
+            if (p.says("resource") && p.is_name(1)) resource = p.next().text;
+            if (p.says("end_resource")) resource.clear();
             p.take();
+        }
     }
-    to.project.tasks.insert(to.project.tasks.end(), tasks.begin(), tasks.end());
+    warn_of_parts(to, tasks);
+    std::ranges::move(tasks, std::back_inserter(to.project.tasks));
 }
 
 }  // namespace lineshaft::projects

@@ -45,6 +45,7 @@ class PlcopenProject {
             for (const pugi::xml_node resource : configuration.children("resource")) {
                 globals_of(resource);
                 for (const pugi::xml_node task : resource.children("task")) add_task(task);
+                add_background(resource);
                 data_of(resource);
             }
         }
@@ -118,15 +119,29 @@ class PlcopenProject {
                                   file_.mark(file_.part(task.attribute("name")))}};
         std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
         made.every = interval_of(file_.plain(task.attribute("interval")));
-        made.event = file_.plain(task.attribute("single"));
         read_settings(task, made);
-        for (const pugi::xml_node instance : task.children("pouInstance")) {
+        if (const pugi::xml_attribute single = task.attribute("single"))
+            made.single = {file_.plain(single), file_.mark(file_.part(single))};
+        add_programs(task, made);
+        to_.project.tasks.push_back(std::move(made));
+    }
+
+    /// Programs that stand in no task.
+    void add_background(pugi::xml_node resource) {
+        ProjectTask made{.name = {}, .is_background = true, .counts_always = true};
+        add_programs(resource, made);
+        if (!made.programs.empty()) to_.project.tasks.push_back(std::move(made));
+    }
+
+    void add_programs(pugi::xml_node owner, ProjectTask& to) const {
+        for (const pugi::xml_node instance : owner.children("pouInstance")) {
             const pugi::xml_attribute type = instance.attribute("typeName");
             const bool is_typed = !file_.plain(type).empty();
             const pugi::xml_attribute named = is_typed ? type : instance.attribute("name");
-            made.programs.push_back({{file_.plain(named), file_.mark(file_.part(named))}});
+            TaskProgram& program = to.programs.emplace_back(
+                TaskProgram{{file_.plain(named), file_.mark(file_.part(named))}});
+            if (is_typed) program.instance = file_.plain(instance.attribute("name"));
         }
-        to_.project.tasks.push_back(std::move(made));
     }
 
     const XmlFile& file_;

@@ -217,6 +217,8 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
         if (is_source(entry->path()) && !is_apax(entry->path()) && entry->is_regular_file(unknown))
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
+    if (!std::ranges::all_of(files, has_name_of_any_text))
+        std::erase_if(files, has_name_of_any_text);
     std::erase_if(files, is_database);
     std::erase_if(files, is_of_a_linker);
     std::erase_if(files, is_built);

@@ -23,16 +23,22 @@ struct Name {
 /// A program that a task runs. A CONFIGURATION names its instance, and gives inputs their values.
 struct TaskProgram : Name {
     std::string instance = {};
+    std::string path = {};  ///< of the instance, with its RESOURCE: `R1.P1`
     std::vector<std::pair<std::string, std::string>> given = {};
+    std::vector<std::pair<Name, std::string>> apart = {};  ///< blocks of it, and the tasks of these
 };
 
 /// A task: cyclic, free, or started by an event.
 struct ProjectTask {
-    Name name;
-    std::int64_t every = 0;     ///< [ns] 0: not said, free, or started by an event
-    bool is_free = false;       ///< begins again as soon as it has ended
-    std::string event = {};     ///< whose rising edge starts it
-    std::int64_t priority = 0;  ///< as the project counts: the smallest is the most urgent
+    Name name;                   ///< empty: of programs without a task
+    std::string resource = {};   ///< of a CONFIGURATION
+    std::int64_t every = 0;      ///< [ns] 0: not said, free, or started by an event
+    std::int64_t priority = 0;   ///< as the project counts: the smallest is the most urgent
+    Name single = {};            ///< the BOOL whose rising edges start it; empty: none is said
+    std::string event = {};      ///< what starts it, where that may be none of its variables
+    bool is_free = false;        ///< begins again as soon as it has ended
+    bool is_background = false;  ///< again and again, when no other has to run
+    bool counts_always = false;  ///< else one that is not said to be cyclic is left out
     std::vector<TaskProgram> programs = {};
 };
 

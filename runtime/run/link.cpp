@@ -10,6 +10,7 @@
 #include "runtime/outside/outside.hpp"
 #include "runtime/scan/expectations.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/used_sources.hpp"
 #include "runtime/trace/report_setup.hpp"
 #include "runtime/trace/trace_setup.hpp"
@@ -43,6 +44,23 @@ std::vector<std::string> types_of(const Program& program) {
     return types;
 }
 
+/// Programs of a CONFIGURATION that are no blocks of the program, which has its own tasks.
+void warn_of_left_programs(const Program& program, const st::Library& library, Diagnostics& out) {
+    std::vector<std::string> types = types_of(program);
+    for (const auto& [type, mark] : library.configured_programs()) {
+        const auto block = std::ranges::find_if(
+            types, [&](const std::string& name) { return same_letters(name, type); });
+        if (block == types.end())
+            out.warn(code::not_supported, mark,
+                     fmt::format("no block runs this program of the CONFIGURATION, a '{}'", type),
+                     fmt::format("add name: {{type: {}, task: ...}}; 'lineshaft new --from' writes "
+                                 "a program with all of them",
+                                 type));
+        else
+            types.erase(block);
+    }
+}
+
 /// What the program's Structured Text brings along; null if there is a mistake in it.
 std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& catalog,
                                         Diagnostics& out) {
@@ -55,6 +73,7 @@ std::shared_ptr<const Catalog> kinds_of(const Program& program, const Catalog& c
     for (const Diagnostic& d : found.warnings()) out.warn(d.code, d.mark, d.message, d.help);
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};
+    warn_of_left_programs(program, *library, out);
     for (const BlockType& kind : library->kinds()) kinds->add(kind);
     return kinds;
 }

@@ -6,8 +6,12 @@
 
 namespace lineshaft {
 
-/// Whether the file's name ends as one of Structured Text does.
+/// Whether the file's name ends as one of Structured Text does, or as that of any text, and it
+/// begins with a unit of the language, behind comments, and has the end of one.
 bool is_structured_text(const std::filesystem::path& file);
+
+/// The file's name does not say what is in it: `.txt`, `.il`.
+bool has_name_of_any_text(const std::filesystem::path& file);
 
 /// A file's text in UTF-8: UTF-16 is known by its byte order mark, and a byte that belongs to no
 /// character of UTF-8 is one of Windows-1252.

@@ -68,7 +68,8 @@ Exit execute(const NewCommand& command) {
     const std::string text = command.project.empty()
                                  ? fmt::format(program_text, path.stem().string())
                                  : program_around(command.project, path, out);
-    if (!out.empty()) return report(out, false);
+    if (!out.empty() || !out.warnings().empty()) report(out, false);
+    if (!out.empty()) return Exit::wrong;
     const std::string option =
         command.project.empty() ? std::string() : include_option(command.project, path);
     OutputFile file(path.string());

@@ -1,7 +1,6 @@
 #include "tools/lineshaft/new_project.hpp"
 
 #include <algorithm>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,6 +14,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/used_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
+#include "tools/lineshaft/new_tasks.hpp"
 
 namespace lineshaft {
 
@@ -27,100 +27,37 @@ struct NewBlock {
     std::string name, type, task;
     std::vector<std::pair<std::string, std::string>> given = {};  ///< axes and values, by path
     bool called = false;                                          ///< by the sources of others
+    std::string note = {};                                        ///< what is otherwise than there
 };
-
-struct NewTask {
-    std::string name;
-    std::int64_t every, priority;  ///< `every` 0: once, before all others
-    std::vector<projects::TaskProgram> programs;
-    const char* remark = "";  ///< on `every`, where the project does not say it
-};
-
-/// A name of a task as a program may have it.
-std::string plain_name(std::string_view text) {
-    std::string name;
-    for (const char c : text) name += is_letter(c) || is_digit(c) ? c : '_';
-    return name.empty() || is_digit(name.front()) ? "task_" + name : name;
-}
 
 std::string time_text(std::int64_t ns) {
     if (ns % 1'000'000 == 0) return fmt::format("{} ms", ns / 1'000'000);
     return ns % 1000 == 0 ? fmt::format("{} us", ns / 1000) : fmt::format("{} ns", ns);
 }
 
-bool is_memory(const projects::OrganizationBlock& block) {
-    using enum projects::OrganizationBlock::Start;
-    return block.start == clock_memory || block.start == system_memory;
-}
-
-/// One for OB1 and its like, one for each cyclic interrupt, with the interval that TIA Portal gives
-/// a new one and the priority of its number, one for what runs at the start, one for the bits that
-/// are clocks, whose half periods are whole times of 50 ms.
-void add_organization_blocks(const projects::Project& project, std::set<std::string>& names,
-                             std::vector<NewTask>& tasks) {
-    using enum projects::OrganizationBlock::Start;
-    std::vector<projects::OrganizationBlock> blocks = project.organization_blocks;
-    std::ranges::stable_sort(blocks, {}, &projects::OrganizationBlock::number);
-    const auto add = [&](std::string name, const NewTask& task) {
-        while (!names.insert(name).second) name += '_';
-        tasks.push_back(task);
-        tasks.back().name = name;
-    };
-    if (std::ranges::all_of(blocks, is_memory)) return;
-    const auto add_all = [&](std::initializer_list<projects::OrganizationBlock::Start> starts,
-                             const char* name, const NewTask& task) {
-        NewTask made = task;
-        for (const auto start : starts)
-            for (const auto& block : blocks)
-                if (block.start == start) made.programs.push_back({block.name});
-        if (!made.programs.empty()) add(name, made);
-    };
-    add_all({system_memory, cycle}, "main", {{}, 10'000'000, 1, {}});
-    for (const auto& block : blocks)
-        if (block.start == cyclic_interrupt)
-            add(plain_name(block.name.text), {{},
-                                              100'000'000,
-                                              8 + std::clamp<std::int64_t>(block.number - 30, 0, 8),
-                                              {{block.name}},
-                                              "  # the export does not say the interval"});
-    add_all({startup}, "startup", {{}, 0, 0, {}});
-    add_all({clock_memory}, "clock_memory", {{}, 50'000'000, 17, {}});
-}
-
-constexpr std::int64_t usual_interval = 10'000'000;  // [ns]
-
-bool is_of_event(const projects::ProjectTask& task) {
-    return task.every == 0 && !task.is_free;
-}
-
-/// Those that are cyclic or free. A project's smallest priority is the most urgent, here the
-/// largest.
-std::vector<NewTask> tasks_of(const projects::Project& project) {
-    std::vector<NewTask> tasks;
-    std::set<std::int64_t, std::greater<>> priorities;
-    for (const projects::ProjectTask& task : project.tasks)
-        if (!is_of_event(task)) priorities.insert(task.priority);
-    std::set<std::string> names;
-    for (const projects::ProjectTask& task : project.tasks) {
-        if (is_of_event(task)) continue;
-        std::string name = plain_name(task.name.text);
-        while (!names.insert(name).second) name += '_';
-        const auto rank = std::distance(priorities.begin(), priorities.find(task.priority));
-        tasks.push_back({name, task.is_free ? usual_interval : task.every, rank + 1, task.programs,
-                         task.is_free ? "  # it runs freely there, without an interval" : ""});
-    }
-    add_organization_blocks(project, names, tasks);
-    if (tasks.empty()) tasks.push_back({"main", usual_interval, 1, {}});
-    return tasks;
-}
-
 bool is_program(const BlockType& kind) {
     return kind.doc.starts_with("PROGRAM ");
 }
 
-/// The programs that tasks call; where none says so, PLC_PRG, as CoDeSys does, or all of them in
-/// the first task.
-std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks) {
+/// All of it is of CoDeSys 2.3.
+bool is_exported(const projects::Project& project) {
+    return std::ranges::all_of(
+        project.sources, [](const auto& source) { return lower(source->path).ends_with(".exp"); });
+}
+
+/// Null: there is none of that name.
+const BlockType* program_called(const st::Library& library, std::string_view name) {
+    const auto kinds = library.kinds();
+    const auto found = std::ranges::find_if(kinds, [&](const BlockType& kind) {
+        return is_program(kind) && same_letters(kind.name, name);
+    });
+    return found == kinds.end() ? nullptr : &*found;
+}
+
+/// The programs that tasks call; where none says so, in the first task PLC_PRG of an export of
+/// CoDeSys 2.3, else all that no other calls.
+std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<NewTask>& tasks,
+                                  bool is_exported) {
     std::vector<NewBlock> blocks;
     const auto is_one_of_several = [&](const projects::TaskProgram& program) {
         std::ptrdiff_t count = 0;
@@ -139,17 +76,27 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
         blocks.push_back({name, std::string(kind.name), task});
     };
     for (const NewTask& task : tasks)
-        for (const projects::TaskProgram& program : task.programs)
-            for (const BlockType& kind : library.kinds()) {
-                if (!is_program(kind) || lower(kind.name) != lower(program.text)) continue;
-                add(is_one_of_several(program) ? program.instance : kind.name, kind, task.name);
-                blocks.back().given = program.given;
-            }
-    for (const bool all : {false, true})
-        if (blocks.empty())
-            for (const BlockType& kind : library.kinds())
-                if (is_program(kind) && (all || lower(kind.name) == "plc_prg"))
-                    add(kind.name, kind, tasks.front().name);
+        for (const projects::TaskProgram& program : task.programs) {
+            const BlockType* made = program_called(library, program.path);
+            const BlockType* kind = made ? made : program_called(library, program.text);
+            if (!kind) continue;
+            const bool is_by_instance = made || is_one_of_several(program);
+            add(is_by_instance ? program.instance : kind->name, *kind, task.name);
+            blocks.back().given = program.given;
+            for (const auto& [part, other] : program.apart)
+                blocks.back().note +=
+                    fmt::format("{}'{}' is of the task '{}' in the project",
+                                blocks.back().note.empty() ? "" : "; ", part.text, other);
+        }
+    for (const BlockType& kind : library.kinds())
+        if (blocks.empty() && is_exported && is_program(kind) && lower(kind.name) == "plc_prg")
+            add(kind.name, kind, tasks.front().name);
+    for (const bool with_called : {false, true}) {
+        if (!blocks.empty()) break;
+        for (const BlockType& kind : library.kinds())
+            if (is_program(kind) && (with_called || !library.is_called(kind.name)))
+                add(kind.name, kind, tasks.front().name);
+    }
     return blocks;
 }
 
@@ -293,9 +240,11 @@ std::vector<Field> addresses_of(const st::Library& library) {
     return {image->fields.begin(), image->fields.end()};
 }
 
-/// An input from outside for each address of the area I: `%IX0.3` is inputs.IX0_3.
-std::string inputs_text(const std::vector<Field>& addresses) {
+/// An input from outside for each address of the area I: `%IX0.3` is inputs.IX0_3. One that starts
+/// a task may be named nowhere else.
+std::string inputs_text(const std::vector<Field>& addresses, const std::vector<NewTask>& tasks) {
     std::string inputs, wires;
+    std::set<std::string> names;
     for (const Field& field : addresses) {
         const bool is_number = field.unit.empty();
         if (field.direction != Direction::input || !field.name.starts_with("%I") || !is_number)
@@ -305,12 +254,18 @@ std::string inputs_text(const std::vector<Field>& addresses) {
         const std::string note =
             field.doc.empty() ? ""
                               : fmt::format("  # {}", field.doc.substr(0, field.doc.find('\n')));
+        names.insert("inputs." + name);
         inputs += fmt::format("  {}: {}{}\n", name, value, note);
         wires += fmt::format("  \"{}\": inputs.{}\n", field.name, name);
     }
+    for (const NewTask& task : tasks)
+        if (task.on.starts_with("inputs.") && names.insert(task.on).second)
+            inputs += fmt::format("  {}: false  # starts the task {}\n",
+                                  task.on.substr(task.on.find('.') + 1), task.name);
     if (inputs.empty()) return {};
+    if (!wires.empty()) wires.insert(0, "io:\n");
     return "inputs:                          # stimuli change them: lineshaft form stimulus\n" +
-           inputs + "io:\n" + wires;
+           inputs + wires;
 }
 
 /// Addresses after what a program names itself, outputs before all others.
@@ -336,20 +291,26 @@ std::string remark_on_event(const projects::ProjectTask& task) {
                        task.event.empty() ? "an event" : fmt::format("the event '{}'", task.event));
 }
 
+std::string comment_of(std::string_view note) {
+    return note.empty() ? "" : fmt::format("  # {}", note);
+}
+
 std::string text_of(const projects::Project& project, const std::vector<NewTask>& tasks,
                     const std::vector<NewBlock>& blocks) {
     std::string text = "tasks:                           # the larger priority runs first\n";
     for (const NewTask& task : tasks)
         text += task.every == 0 ? fmt::format("  {}: {{once: true}}\n", task.name)
-                                : fmt::format("  {}: {{every: {}, priority: {}}}{}\n", task.name,
-                                              time_text(task.every), task.priority, task.remark);
+                                : fmt::format("  {}: {{{}, priority: {}}}{}\n", task.name,
+                                              task.on.empty() ? "every: " + time_text(task.every)
+                                                              : fmt::format("on: [{}]", task.on),
+                                              task.priority, comment_of(task.note));
     for (const projects::OrganizationBlock& block : project.organization_blocks)
         if (block.start == projects::OrganizationBlock::Start::event)
             text +=
                 fmt::format("  # '{}' is of an event: give it a task such as x: {{on: a.signal}}\n",
                             block.name.text);
     for (const projects::ProjectTask& task : project.tasks)
-        if (is_of_event(task)) text += remark_on_event(task);
+        if (!is_taken(task)) text += remark_on_event(task);
     text += "blocks:\n";
     for (const NewBlock& block : blocks) {
         text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
@@ -358,7 +319,7 @@ std::string text_of(const projects::Project& project, const std::vector<NewTask>
             const std::string_view mark = path.find('[') == path.npos ? "" : "\"";
             text += fmt::format(", {0}{1}{0}: {2}", mark, path, value);
         }
-        text += "}\n";
+        text += "}" + comment_of(block.note) + "\n";
     }
     return text;
 }
@@ -434,13 +395,15 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
     const projects::Project& project = chosen->project;
+    Diagnostics found;  // of which a run tells the warnings
     const auto library =
         out.empty() ? st::compile_used(project.sources, task_programs(project), standard_blocks(),
-                                       out, {.references = references_of(project)})
+                                       found, {.references = references_of(project)})
                     : std::optional<st::Library>();
+    for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};
     const std::vector<NewTask> tasks = tasks_of(project);
-    std::vector<NewBlock> programs = programs_of(*library, tasks);
+    std::vector<NewBlock> programs = programs_of(*library, tasks, is_exported(project));
     const auto& organization_blocks = project.organization_blocks;
     const bool has_memory = std::ranges::any_of(organization_blocks, is_memory);
     if (has_memory && std::ranges::all_of(organization_blocks, is_memory)) programs.clear();
@@ -465,7 +428,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         "#   lineshaft check {0}.yaml{1}\n"
         "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}{4}run: {{for: 1 s}}\n",
         name, include_option(path, file), sources_text(*chosen, file), dialect_text(),
-        text_of(project, tasks, blocks) + inputs_text(addresses));
+        text_of(project, tasks, blocks) + inputs_text(addresses, tasks));
     std::vector<std::string> signals = motions_of(blocks);
     const bool moves = !signals.empty();
     std::ranges::move(signals_of(*library, programs.front(), moves), std::back_inserter(signals));

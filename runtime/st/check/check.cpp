@@ -1,6 +1,7 @@
 #include "runtime/st/check/check.hpp"
 
 #include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/configuration.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/image.hpp"
@@ -40,12 +41,14 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     Checking c{tree, catalog, evaluate, out};
     c.missing_libraries = missing;
     c.uses = uses;
+    add_configured_programs(c);
     collect_names(c);
     resolve_bases(c);
     declare_globals(c);
     declare_routines(c);
     begin_parts_of_blocks(c);
     check_classes(c);
+    configure_programs(c);
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
     write_deletions(c);

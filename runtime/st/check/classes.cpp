@@ -25,14 +25,17 @@ Routine* find_extended(Checking& c, Token name) {
 /// Null where there is none of that name, which was told.
 Routine* find_base(Checking& c, const Routine& of, const Token& name, bool wants_interface) {
     const auto fits = [&](const Routine& r) {
-        return r.type && r.is_interface() == wants_interface && r.pou->kind != PouKind::program;
+        const bool is_program = r.pou->kind == PouKind::program;
+        return r.type && r.is_interface() == wants_interface && is_program == of.pou->is_configured;
     };
     Routine* found = c.find_routine(name);
     if (found && fits(*found)) return found;
     if (Routine* extended = wants_interface ? nullptr : find_extended(c, name)) return extended;
     if (c.is_lost(name) || c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place))
         return nullptr;
-    const std::string_view wanted = wants_interface ? "an interface" : "a function block";
+    const std::string_view wanted = wants_interface         ? "an interface"
+                                    : of.pou->is_configured ? "a PROGRAM"
+                                                            : "a function block";
     if (found)
         return c.fail(code::type_does_not_fit, name.place,
                       fmt::format("'{}' is not {}", name.text, wanted),

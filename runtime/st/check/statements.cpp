@@ -7,6 +7,7 @@
 
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/configuration.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -325,6 +326,7 @@ void check_body(Checking& c, Routine& routine) {
     routine.body.insert(routine.body.end(), chart.begin(), chart.end());
     routine.body.insert(routine.body.end(), routine.pou->body.begin(), routine.pou->body.end());
     check(c, routine.body);
+    connect(c, routine);
     bring_up_to_date(c, routine);
     c.routine = nullptr;
 }

@@ -154,7 +154,7 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);
         fill_default(w, image, 0, *global.type);
-        fill_data_block(w, image, global);
+        if (global.pou) fill_assigned(w, image, global.pou->body);
         if (global.name == image_name) fill_process_image(w, image);
         w.images[global.type] = std::move(image);
     }

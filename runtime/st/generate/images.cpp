@@ -121,9 +121,8 @@ void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
     }
 }
 
-void fill_data_block(Writing& w, Writing::Image& image, const Global& global) {
-    if (!global.pou) return;
-    for (const Statement* s : global.pou->body) {
+void fill_assigned(Writing& w, Writing::Image& image, const Block& assignments) {
+    for (const Statement* s : assignments) {
         const Location to = locate(w, *s->target);
         if (to.byte)
             reinterpret_cast<char*>(&image[to.slot])[*to.byte] =

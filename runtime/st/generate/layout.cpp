@@ -160,6 +160,7 @@ void lay_out(Writing& w, Routine& block) {
     if (w.code.has_kinds)
         image[w.code.kind_slot()] = w.kinds.emplace(&block, w.kinds.size() + 1).first->second;
     for (const Variable& variable : block.variables) fill(w, image, variable.slot, variable);
+    fill_assigned(w, image, block.initials);
 }
 
 void lay_out_call(Writing& w, Routine& routine) {

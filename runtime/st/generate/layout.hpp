@@ -45,8 +45,9 @@ void fill(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type,
           const Expression& value);
 void fill_default(Writing& w, Writing::Image& image, std::uint32_t at, const Type& type);
 
-/// What stands behind BEGIN are initial values.
-void fill_data_block(Writing& w, Writing::Image& image, const Global& global);
+/// Constants that assignments give to variables of one piece of memory: what stands behind BEGIN of
+/// a data block, and what a CONFIGURATION says of a program.
+void fill_assigned(Writing& w, Writing::Image& image, const Block& assignments);
 
 /// All images that instructions use go into the code, once each.
 void finish_images(Writing& w);

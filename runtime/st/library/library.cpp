@@ -63,6 +63,29 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     return library;
 }
 
+std::vector<std::pair<std::string_view, Mark>> Library::configured_programs() const {
+    const auto is_kind = [&](std::string_view name) {
+        return std::ranges::any_of(
+            kinds_, [&](const BlockType& kind) { return same_name(kind.name, name); });
+    };
+    std::vector<std::pair<std::string_view, Mark>> programs;
+    for (const ProgramInstance& program : made_->tree.instances)
+        programs.emplace_back(is_kind(program.path) ? program.path : program.type.text,
+                              program.name.place.mark());
+    return programs;
+}
+
+bool Library::is_called(std::string_view program) const {
+    const auto is_it = [&](const Called& called) {
+        return called.is_call && called.routine->pou->kind == PouKind::program &&
+               same_name(called.routine->name, program);
+    };
+    return std::ranges::any_of(made_->checked.routines, [&](const Routine& routine) {
+        return !routine.pou->is_configured && !same_name(routine.name, program) &&
+               std::ranges::any_of(routine.calls, is_it);
+    });
+}
+
 FaultPlace Library::fault(const BlockType& kind, const std::byte* instance) const {
     const bool is_image = kind.context == &made_->image;
     if (is_image || !static_cast<const KindContext*>(kind.context)->routine) return {};

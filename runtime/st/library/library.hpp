@@ -78,6 +78,13 @@ class Library {
     /// Options::times; what they took is the kind's `time_taken`.
     std::span<const std::uint64_t, op_classes> counts(const std::byte* instance) const;
 
+    /// What the CONFIGURATIONs of its sources have of programs: the kind of each, and where it
+    /// stands.
+    std::vector<std::pair<std::string_view, Mark>> configured_programs() const;
+
+    /// Some other code of its sources calls that PROGRAM.
+    bool is_called(std::string_view program) const;
+
     /// For tests and people: the code of all.
     std::string listing() const;
 

@@ -138,18 +138,28 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
         const Dialect& dialect;
     };
     static constexpr Ending endings[] = {
-        {plain_text, iec},           {".typ", automation_studio}, {".var", automation_studio},
-        {".fun", automation_studio}, {".prg", automation_studio}, {".exp", codesys},
-        {".tcpou", twincat},         {".tcdut", twincat},         {".tcgvl", twincat},
-        {".tcio", twincat},          {".tctleo", twincat},        {".plcproj", twincat},
-        {".xml", codesys},           {".matiec", matiec}};
+        {".scl.txt", scl},           {".exp.txt", codesys},       {".typ", automation_studio},
+        {".var", automation_studio}, {".fun", automation_studio}, {".prg", automation_studio},
+        {".exp", codesys},           {".tcpou", twincat},         {".tcdut", twincat},
+        {".tcgvl", twincat},         {".tcio", twincat},          {".tctleo", twincat},
+        {".plcproj", twincat},       {".xml", codesys},           {".matiec", matiec}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
-    if (it == std::end(endings)) return scl;
-    if (&it->dialect == &iec && is_of_matiec(text)) return matiec;
-    if (&it->dialect == &iec && is_of_codesys(text)) return codesys;
-    return &it->dialect == &codesys && has_bit_of_word(text) ? word_addressed : it->dialect;
+    const bool is_plain = is_plain_text(path);
+    if (it == std::end(endings) && !is_plain) return scl;
+    const Dialect& said = is_plain ? iec : it->dialect;
+    if (&said == &iec && is_of_matiec(text)) return matiec;
+    if (&said == &iec && is_of_codesys(text)) return codesys;
+    return &said == &codesys && has_bit_of_word(text) ? word_addressed : said;
+}
+
+bool is_plain_text(std::string_view path) {
+    static constexpr std::string_view endings[] = {plain_text, ".iecst", ".iec", ".txt",
+                                                   ".text",    ".il",    ".pou"};
+    const std::string name = lower(path);
+    const auto ends = [&](std::string_view ending) { return name.ends_with(ending); };
+    return std::ranges::any_of(endings, ends) && !ends(".scl.txt") && !ends(".exp.txt");
 }
 
 std::span<const DialectName> dialect_names() {

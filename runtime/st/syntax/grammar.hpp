@@ -30,6 +30,12 @@ void parse_result(Parsing& p, Pou& pou);
 /// `said`: where to note it.
 bool accept_access(Parsing& p, Access* said = nullptr);
 
+// parse_configurations.cpp
+void parse_configuration(Parsing& p);
+bool at_var_config(const Parsing& p);
+/// `resource`: it stands in this RESOURCE; empty: in none.
+void parse_var_config(Parsing& p, std::string_view resource = {});
+
 // parse_bare_program.cpp
 /// Statements stand here, or behind the variables that do, with no PROGRAM around them: before all
 /// units of the source, and behind nothing that is wrong.

@@ -23,35 +23,6 @@ bool is_of_language(const Parsing& p, const Pou& pou) {
            });
 }
 
-/// Var_Config : 'VAR_CONFIG' Any_Token * 'END_VAR' ';' ?
-/// What CODESYS 2.3 has for addresses left open.
-bool skip_var_config(Parsing& p) {
-    if (!p.is(Word::name) || !p.here().first_in_line || !p.says("var_config")) return false;
-    while (!p.is(Word::end_of_file) && !p.is(Word::end_var_)) p.take();
-    p.accept(Word::end_var_);
-    p.accept(Word::semicolon);
-    return true;
-}
-
-/// Config_Decl : 'CONFIGURATION' ( Var_Section | Any_Token ) * 'END_CONFIGURATION' ';' ?
-/// Its variables are VAR_GLOBAL.
-void parse_configuration(Parsing& p) {
-    const Token opener = p.take();
-    p.out.warn(code::not_supported, opener.place.mark(),
-               "the tasks of a CONFIGURATION are not taken",
-               "write tasks into the program's YAML file");
-    while (!p.is(Word::end_of_file) && !p.says("end_configuration"))
-        if (p.is(Word::var_global_))
-            p.tree.globals.push_back(parse_section(p, Section::global));
-        else
-            p.take();
-    if (p.is(Word::end_of_file))
-        tell(p, code::something_else_expected, opener.place, "the CONFIGURATION does not end",
-             "it ends with END_CONFIGURATION");
-    p.take();
-    p.accept(Word::semicolon);
-}
-
 bool at_attribute(const Cursor& p) {
     static constexpr std::string_view words[] = {
         "title", "author", "family", "name", "know_how_protect", "read_only", "unlinked"};
@@ -201,7 +172,7 @@ void parse_declaration(Parsing& p) {
     if (p.is(Word::var_global_) || p.is(Word::var_)) return parse_globals(p);
     if (p.is(Word::configuration_)) return parse_configuration(p);
     if (p.at_action()) return parse_action_beside(p);
-    if (skip_var_config(p)) return;
+    if (at_var_config(p)) return parse_var_config(p);
     if (p.is_name(1) && respell(p, declaration_words)) return parse_declaration(p);
     const bool is_tests = p.source->kind == SourceKind::tests;
     if (p.at_test() || (is_tests && p.is(Word::test_))) return parse_test(p);

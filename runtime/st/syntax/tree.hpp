@@ -285,9 +285,10 @@ struct Pou {
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
     bool follows_init = false;            ///< a method that is called once behind FB_init
-    bool is_action = false;  ///< of a method, and of a function that is one beside all blocks
-    bool is_lost = false;    ///< not understood
-    bool is_tests = false;   ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
+    bool is_action = false;      ///< of a method, and of a function that is one beside all blocks
+    bool is_lost = false;        ///< not understood
+    bool is_configured = false;  ///< made of a PROGRAM for one that a CONFIGURATION has of it
+    bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     Retention retention = Retention::unsaid;  ///< of a data block: of what its sections leave open
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
@@ -310,6 +311,29 @@ struct Scope {
     std::uint32_t begin = 0, end = 0;  ///< bytes of the source
     std::string_view path = {};        ///< of the namespace, with those around it: `a.b`
     std::vector<Token> usings = {};    ///< namespaces, `a.b`
+};
+
+/// `gain := g` or `cnt => total` of a program in a CONFIGURATION: `own` is the program's.
+struct Connection {
+    Expression *own = nullptr, *other = nullptr;
+    bool is_output = false;
+};
+
+/// `PROGRAM P1 WITH Fast : Main(gain := g);`
+struct ProgramInstance {
+    std::string_view path = {};        ///< `R1.P1`, or without a RESOURCE `Cell.P1`
+    std::string_view whole_path = {};  ///< with the CONFIGURATION before it
+    Token name = {}, type = {};
+    std::vector<Connection> connections = {};
+};
+
+/// `R1.P1.lamp AT %QX0.3 : BOOL := TRUE;` of VAR_CONFIG.
+struct ConfiguredVariable {
+    Expression* path = nullptr;
+    std::string_view resource = {};  ///< that it stands in
+    Token at = {};                   ///< `end_of_file`: none
+    TypeText* type = nullptr;        ///< null: none is said
+    Expression* initial = nullptr;
 };
 
 /// A block with VAR_GENERIC, to be read again for each list of values.
@@ -346,6 +370,8 @@ struct Tree {
     std::vector<TypeDeclaration> types;  ///< in the order of the sources, as all lists
     std::vector<Pou*> units;             ///< all but methods
     std::vector<DeclarationBlock> globals;
+    std::vector<ProgramInstance> instances;
+    std::vector<ConfiguredVariable> configured;
     std::deque<GenericBlock> generics;
     std::vector<GenericUse> generic_uses;
     NameMap<bool> lost;  ///< what stands in those not understood; true: their names

@@ -247,8 +247,10 @@ struct Routine {
     bool is_dispatched = false;                     ///< a call may find it by the instance
     bool dispatches = false;                        ///< calls what is found by an instance
     Variable* result = nullptr;
-    Type* type = nullptr;                 ///< of its instances, of a block
-    Block body = {};                      ///< as checked: what its statements stand for
+    Type* type = nullptr;            ///< of its instances, of a block
+    Block body = {};                 ///< as checked: what its statements stand for
+    Block before = {}, behind = {};  ///< copies that a CONFIGURATION asks for around it
+    Block initials = {};  ///< assignments of constants: its variables begin so, whatever they say
     Block begins = {}, call_begins = {};  ///< what comes before it, once and in each call
     Variable* begun = nullptr;            ///< of a block: that the first was done
     std::vector<Called> calls = {};
