@@ -33,8 +33,10 @@ std::uint32_t bits_together(AddressCount count) {
     return count == AddressCount::words ? 16 : 8;
 }
 
-/// Numbers that each level of `%IW2.5.7.1` has below the first; so all fit into an area.
-std::uint32_t numbers_in_level(std::size_t levels) {
+/// Numbers that each level of `%IW2.5.7.1` has below the first; so all fit into an area, but for
+/// those of CODESYS.
+std::uint32_t numbers_in_level(AddressCount count, std::size_t levels) {
+    if (count != AddressCount::bytes) return 256;
     constexpr std::uint32_t numbers[] = {256, 64, 16, 8};
     return numbers[std::min(std::max<std::size_t>(levels, 1), std::size(numbers)) - 1];
 }
@@ -58,7 +60,8 @@ std::optional<ImageAddress> read_address(std::string_view text, AddressCount cou
     if (!first) return {};
     address.byte = *first;
     const auto points = static_cast<std::size_t>(std::ranges::count(text, '.'));
-    const std::uint32_t most_inner = numbers_in_level(address.bits > 1 ? points : points - 1);
+    const std::uint32_t most_inner =
+        numbers_in_level(count, address.bits > 1 ? points : points - 1);
     bool is_hierarchical = false;
     while (text.starts_with('.') && (address.bits > 1 || text.find('.', 1) != text.npos)) {
         text.remove_prefix(1);

@@ -35,9 +35,9 @@ inline constexpr std::uint32_t longest_area = 65536;
 
 /// Also `%IR2`, a REAL's place on OWEN's controllers, as `%ID2`, `%I0.3` and, as the standard
 /// numbers bits, `%IX3`. Of a hierarchy, `%IW1.2`, `%QX1.2.3`, each number before the last one (of
-/// a bit, its own) counts 256 of the next, of three numbers 64, of four 16 and of five 8: `%IW1.2`
-/// is the word of number 258, at byte 516. Empty where the text is none; it may lie beyond its
-/// area.
+/// a bit, its own) counts 256 of the next, of three numbers 64, of four 16 and of five 8 (in
+/// CODESYS always 256): `%IW1.2` is the word of number 258, at byte 516. Empty where the text is
+/// none; it may lie beyond its area.
 std::optional<ImageAddress> read_address(std::string_view text, AddressCount count);
 
 /// `%MW0..%MW99`: one behind the other, without gaps; of an address alone it is it. Empty for what

@@ -55,6 +55,11 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
 /// have their own types already, and become what the function takes.
 const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected);
 
+// extreme_texts.cpp
+
+/// MIN, MAX and LIMIT of texts, which have their types: choices of texts stand for the call then.
+const Type* check_extreme_text(Checking& c, Expression*& e);
+
 // conversion_calls.cpp
 
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: a conversion stands for the call then.

@@ -169,10 +169,6 @@ std::span<const DialectName> dialect_names() {
     return names;
 }
 
-bool is_plain_text(std::string_view path) {
-    return lower(path).ends_with(plain_text);
-}
-
 static std::string_view plain_text_is_read_as;
 
 void read_plain_text_as(std::string_view ending) {

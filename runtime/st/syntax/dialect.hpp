@@ -83,9 +83,6 @@ struct DialectName {
 /// `iec`, `codesys`, `twincat`, `scl`, `automation_studio`, `matiec`.
 std::span<const DialectName> dialect_names();
 
-/// It ends with `.st`.
-bool is_plain_text(std::string_view path);
-
 /// From now on users' files in `.st` of which SourceFile::read_as says nothing have the dialect of
 /// an ending, one of dialect_names(): by `--source-dialect`, for the whole process.
 void read_plain_text_as(std::string_view ending);
