@@ -60,8 +60,9 @@ void parse_program_configuration(Parsing& p, const ConfigurationAt& at) {
     p.tree.instances.push_back(std::move(made));
 }
 
-/// Config_Inst_Init : Variable_Access ( 'AT' Direct ) ? ( ':' Data_Type ) ? ( ':=' Var_Init ) ? ';'
-/// With an address logi.CAD leaves the type out.
+/// Config_Inst_Init : Qualified_Name ( 'AT' Direct ( ':' Data_Type ) ? | ':' Data_Type )
+///                    ( ':=' Var_Init ) ? ';'
+/// It may be an element, too. With an address logi.CAD leaves the type out.
 void parse_configured_variable(Parsing& p, std::string_view resource) {
     ConfiguredVariable made{.path = parse_access(p), .resource = resource};
     if (!p.panic && p.accept(Word::at_)) {
