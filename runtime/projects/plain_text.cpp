@@ -60,7 +60,7 @@ void leave_out_repeated_exports(std::vector<std::shared_ptr<const SourceFile>>& 
     std::size_t bytes = 0, all = 0;
     for (const auto& [text, i] : exports) {
         is_repeated[i] = bytes < most_bytes && !text.empty() &&
-                         std::ranges::any_of(kept, [&](std::string_view larger) {
+                         std::ranges::any_of(kept, [&text = text](std::string_view larger) {
                              return larger.find(text) != larger.npos;
                          });
         bytes += all;

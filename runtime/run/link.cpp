@@ -49,7 +49,7 @@ void warn_of_left_programs(const Program& program, const st::Library& library, D
     std::vector<std::string> types = types_of(program);
     for (const auto& [type, mark] : library.configured_programs()) {
         const auto block = std::ranges::find_if(
-            types, [&](const std::string& name) { return same_letters(name, type); });
+            types, [&, &type = type](const std::string& name) { return same_letters(name, type); });
         if (block == types.end())
             out.warn(code::not_supported, mark,
                      fmt::format("no block runs this program of the CONFIGURATION, a '{}'", type),

@@ -293,15 +293,18 @@ const Type* own_enumeration_with(Checking& c, const Token& token) {
 namespace {
 
 /// Whether `"..."` is a text, though a variable is called so: where a text is due it is the name of
-/// a global STRING alone.
+/// a global STRING alone, where a character is due that of one.
 bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
     const Dialect& dialect = e.place.dialect();
     if (!e.token.quoted || dialect.is_loose) return e.token.quoted;
     const bool is_due = expected && (expected->kind == Kind::text || expected->is_character);
     if (!is_due || !dialect.quotes_may_enclose_texts) return false;
     const Variable* variable = find_variable(c, e.token);
-    return variable && (expected->is_wide || !variable->type ||
-                        variable->section != Section::global || variable->type->kind != Kind::text);
+    const bool is_character =
+        variable && variable->type && variable->type->is_character && expected->is_character;
+    return variable && !is_character &&
+           (expected->is_wide || !variable->type || variable->section != Section::global ||
+            variable->type->kind != Kind::text);
 }
 
 }  // namespace

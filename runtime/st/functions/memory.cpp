@@ -28,16 +28,12 @@ constexpr const char *copies = "copies n bytes, as if all were read before the f
                      *fills = "sets n bytes to one value; its value is n",
                      *compares = "compares n bytes: -1, 0 or 1 as the first of two that differ is less, none, greater";
 
-// Beckhoff's, those of CODESYS (SysMem) and of B&R.
+// Beckhoff's and those of B&R.
 constexpr StandardFunction memory[] = {
     {"MEMCPY(destAddr, srcAddr: POINTER; n: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
     {"MEMMOVE(destAddr, srcAddr: POINTER; n: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
     {"MEMSET(destAddr: POINTER; fillByte, n: ANY_WHOLE): ANY_INT", fills, Typing::memory, emit_fill},
     {"MEMCMP(pBuf1, pBuf2: POINTER; n: ANY_WHOLE): DINT", compares, Typing::memory, emit_compare},
-    {"SysMemCpy(pDest, pSrc: POINTER; udiCount: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
-    {"SysMemMove(pDest, pSrc: POINTER; udiCount: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
-    {"SysMemSet(pDest: POINTER; udiValue, udiCount: ANY_WHOLE): ANY_INT", fills, Typing::memory, emit_fill},
-    {"SysMemCmp(pBuffer1, pBuffer2: POINTER; udiCount: ANY_WHOLE): DINT", compares, Typing::memory, emit_compare},
     {"brsmemcpy(pDest, pSrc: POINTER; length: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
     {"brsmemmove(pDest, pSrc: POINTER; length: ANY_WHOLE): ANY_INT", copies, Typing::memory, emit_copy},
     {"brsmemset(pDest: POINTER; value, length: ANY_WHOLE): ANY_INT", fills, Typing::memory, emit_fill},
