@@ -26,8 +26,8 @@ struct Session {
     /// Likewise, as they last were understood as a whole: what is half-written is lost to the
     /// others.
     std::map<std::string, std::shared_ptr<const Meaning>> whole_meanings = {};
-    std::map<std::string, std::shared_ptr<const Meaning>>
-        mended_meanings = {};  ///< where none was whole: without the lines that have mistakes
+    /// Where none was whole: without the lines that have mistakes.
+    std::map<std::string, std::shared_ptr<const Meaning>> mended_meanings = {};
     /// Programs as they last could be read with their sources, by path.
     std::map<std::string, std::shared_ptr<const CheckedProgram>> programs = {};
 };
