@@ -499,6 +499,18 @@ def test_pause_and_terminate():
     assert client.end() == 130
 
 
+def refused_launch(tests, name):
+    """What is said of a TEST that cannot be launched."""
+    client = Client(lineshaft, tests, "--test", name)
+    client.request("initialize")
+    try:
+        raise AssertionError(client.request("launch"))
+    except Refused as why:
+        return str(why)
+    finally:
+        client.end()
+
+
 def test_structured_text_tests():
     """A TEST is a machine whose only scan runs it; what fails is told, SETUP and TEARDOWN are scans of their own."""
     tests = folder / "mark_test.st"
@@ -555,23 +567,11 @@ def test_structured_text_tests():
     client.event("stopped")
     assert client.line() == ("TEST 'adds' (TEST)", 11), client.line()
     client.end()
-    client = Client(lineshaft, tests, "--test", "nothing")
-    client.request("initialize")
-    try:
-        raise AssertionError(client.request("launch"))
-    except Refused as why:
-        assert "adds, adds wrong" in str(why), why
-    client.end()
+    assert "adds, adds wrong" in refused_launch(tests, "nothing")
     suite = folder / "suite.TcPOU"
     suite.write_text('<?xml version="1.0"?>\n<TcPlcObject><POU Name="MAIN"><Declaration>PROGRAM MAIN</Declaration>'
                      "<Implementation><ST>TcUnit.RUN();</ST></Implementation></POU></TcPlcObject>\n")
-    client = Client(lineshaft, suite, "--test", "adds")
-    client.request("initialize")
-    try:
-        raise AssertionError(client.request("launch"))
-    except Refused as why:
-        assert "lineshaft new suites --from" in str(why), why
-    client.end()
+    assert "lineshaft new suites --from" in refused_launch(suite, "adds")
 
 
 def test_suites():
