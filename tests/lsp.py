@@ -9,6 +9,7 @@ import json
 import pathlib
 import random
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -100,10 +101,13 @@ def random_edits_are_checked_as_if_fresh():
     names = ("programs/01_axis.yaml", "programs/08_state_machine.yaml", "programs/08_state_machine.scl", "programs/02_gear.yaml",
              "tests/st/blocks.st", "tests/st/charts.st", "tests/st/classes.st", "tests/st/texts.st", "tests/st/siemens.scl",
              "programs/paper/wei2025_table1.yaml", "config/s7_1515.yaml")
-    files = [source / name for name in names if (source / name).exists()]
-    assert len(files) >= 8, files
     client, times = Client(lineshaft), []
     with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder).resolve()  # other tests read the sources while these are edited
+        for part in "programs", "config", "tests/st":
+            shutil.copytree(source / part, root / part)
+        files = [root / name for name in names if (root / name).exists()]
+        assert len(files) >= 8, files
         for file in files:
             start = text = file.read_text(encoding="utf-8")
             beside = file.with_name(f".edited_{file.name}")  # what it names is found from there
