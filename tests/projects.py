@@ -1288,7 +1288,7 @@ def check_left_over():
     plcproj("rest/Rest.plcproj", "Rest", files, [("Tc9_Strange", "Tc9_Strange")])
     said = run("check", "rest")
     assert "ok  rest\n" in said and "Station_OLD.TcPOU" in said and "in what nothing here uses" in said, said
-    assert "the body of 'Drawn' is drawn (UML), and only Structured Text, LD, FBD and CFC are read, in what nothing here uses" in said, said
+    assert "the body of 'Drawn' is drawn (UML), and only Structured Text, LD, FBD, SFC and CFC are read, in what nothing here uses" in said, said
     run("new", "rest", "--from", "rest")
     text = (work / "rest.yaml").read_text()
     assert '"station.feeds[1].axis": MAIN_station_feeds_1__axis' in text and "spare.axis: globals_spare_axis" in text, text

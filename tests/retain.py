@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Kills runs that write retained values, at random moments: the file is always whole, the old or the new one.
 Then flips bits of the file: each is told, and the copy before it is taken where there is one.
+An instance in VAR RETAIN goes on with its values, whatever its initial values are.
 
 usage: retain.py LINESHAFT [KILLS]
 """
@@ -23,6 +24,29 @@ blocks:
 inputs: {a: $count, b: $count}
 retain: [inputs.a, inputs.b, shaft]
 run: {for: 2 s}
+"""
+
+COUNTER = """\
+FUNCTION_BLOCK Counter
+VAR first : INT := Base(); n : INT := first + 1; list : ARRAY[1..2] OF INT := [Base(), Base()]; END_VAR
+VAR NON_RETAIN fresh : INT := Base(); END_VAR
+n := n + 1; list[2] := list[2] + 1; fresh := fresh + 1;
+END_FUNCTION_BLOCK
+FUNCTION Base : INT
+Base := 10;
+END_FUNCTION
+PROGRAM Main
+VAR RETAIN kept : Counter; END_VAR
+VAR plain : Counter; END_VAR
+kept(); plain();
+END_PROGRAM
+"""
+COUNTED = """\
+lineshaft: 1
+sources: [counter.st]
+tasks: {main: {every: 10 ms}}
+blocks: {m: {type: Main, task: main}}
+run: {for: 10 ms}
 """
 
 
@@ -51,11 +75,30 @@ def flips(lineshaft, program, kept, chance):
     print("40 flipped bits were told")
 
 
+def begins_once(lineshaft, folder):
+    """What an instance in VAR RETAIN begins with is not reckoned anew where its values are retained."""
+    (folder / "counter.st").write_text(COUNTER, encoding="utf-8")
+    program, kept = folder / "counter.yaml", folder / "counter.retain"
+    program.write_text(COUNTED, encoding="utf-8")
+    for begun in range(3):
+        subprocess.run([lineshaft, "run", program, "--quiet", "--retain-file", kept], check=True)
+        values = json.loads(kept.read_text(encoding="utf-8"))["values"]
+        scans = 2 * (begun + 1)
+        assert values["m.kept.n"] == 11 + scans and values["m.kept.list[2]"] == 10 + scans, (begun, values)
+        assert values["m.kept.first"] == 10 and not any("plain" in name or "fresh" in name for name in values), values
+    made = subprocess.run([lineshaft, "new", folder / "around", "--from", folder / "counter.st"],
+                          capture_output=True, text=True)
+    around = (folder / "around.yaml").read_text(encoding="utf-8")
+    assert "m.kept.n begun" in values and "begun" not in around, (made, values, around)
+    print("an instance went on with what was retained")
+
+
 def main():
     lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
     kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
     chance = random.Random(1)
     with tempfile.TemporaryDirectory() as folder:
+        begins_once(lineshaft, pathlib.Path(folder))
         program = pathlib.Path(folder, "program.yaml")
         program.write_text(PROGRAM, encoding="utf-8")
         kept = pathlib.Path(folder, "values.retain")

@@ -9,6 +9,7 @@
 
 #include "runtime/projects/drawings/box_trees.hpp"
 #include "runtime/projects/drawings/function_charts.hpp"
+#include "runtime/projects/drawings/step_charts.hpp"
 #include "runtime/projects/event_classes.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
@@ -171,13 +172,20 @@ class ObjectText {
                 text_.append(text_of_box_trees(file_, out_, *variables_, is_kept_, body));
             else if (kind == "CFC")
                 text_.append(text_of_function_chart(file_, out_, *variables_, is_kept_, body));
+            else if (kind == "SFC")
+                text_.append(text_of_step_chart(file_, out_, *variables_, body, unit_of(routine)));
             else
                 out_.add(code::not_supported, file_.mark_of_tag(body),
                          fmt::format("the body of '{}' is drawn ({}), and only Structured Text, "
-                                     "LD, FBD and CFC are read",
+                                     "LD, FBD, SFC and CFC are read",
                                      name(named), kind),
                          "convert it to Structured Text in its editor, or leave it out");
         }
+    }
+
+    static pugi::xml_node unit_of(pugi::xml_node part) {
+        while (part.parent() && std::string_view(part.name()) != "POU") part = part.parent();
+        return part;
     }
 
     const XmlFile& file_;

@@ -202,19 +202,15 @@ void ChartText::add_own_actions(pugi::xml_node step) {
             }
 }
 
-/// That of an instance, `motor.Turn`, is called in an action of the chart's own.
 void ChartText::add_action(pugi::xml_node action) {
     const pugi::xml_attribute named = action.child("reference").attribute("name");
-    const bool is_elsewhere = file_.plain(named).find('.') != std::string::npos;
     write("    ", action);
-    if (named && !is_elsewhere) {
+    if (named) {
         file_.copy(made_.statements, named);
     } else {
         const std::string name = context_.variables.name("_action");
         write(name, action);
         made_.members.write(fmt::format("ACTION {}:\n", name), place_of(action));
-        file_.copy(made_.members, named);
-        if (is_elsewhere) made_.members.write("();", place_of(action));
         made_.members.append(body_text(context_, action.child("inline"), name).statements);
         made_.members.write("\nEND_ACTION\n", place_of(action));
     }

@@ -56,12 +56,12 @@ Expression* nothing(Checking& c, const Expression& like, const Type& type) {
     return list;
 }
 
-/// A variable that no source has, named after what stands at `like`.
+/// A variable that no source has, named after what stands at `like` as none of a source is.
 Variable& add_hidden(Checking& c, std::deque<Variable>& to, const Expression& like,
                      std::string_view name, const Type& type) {
     Variable& made = to.emplace_back();
     made.name = like.token;
-    made.text = c.checked.names.emplace_back(fmt::format("{}.{}", like.token.text, name));
+    made.text = c.checked.names.emplace_back(fmt::format("{} {}", like.token.text, name));
     made.type = &type;
     made.used = true;
     return made;
@@ -336,23 +336,22 @@ void construct_one(Checking& c, const Expression& like, Routine& routine, const 
         construct(c, {like, routine.variables, routine.pou, phase}, type, values, part, to);
 }
 
-namespace {
-
-/// What a variable in VAR RETAIN begins with, once in all runs.
-Statement* make_once_in_all_runs(Checking& c, Routine& of, Statement* begins) {
+/// What a variable begins with that is retained, or whose instance may be: once in all runs then.
+static Statement* make_once_in_all_runs(Checking& c, Routine& of, Statement* begins) {
     const Variable& variable = *c.beginning.variable;
     const bool is_global = variable.space == Space::global;
     const Expression like = like_name(variable.name, begins->place);
-    Variable& flag =
-        add_hidden(c, is_global ? c.checked.variables : of.variables, like, "begun", bool_type);
-    flag.retention = Retention::retain;
+    auto& all = is_global ? c.checked.variables : of.variables;
+    std::string name = "begun";
+    for (const auto& [member, index] : c.beginning.path)
+        name += fmt::format(" {}", member.empty() ? std::to_string(index) : std::string(member));
+    Variable& flag = add_hidden(c, all, like, name, bool_type);
+    flag.retention = variable.retention;
     flag.of = is_global ? nullptr : of.pou;
     flag.section = of.has_instances() || is_global ? Section::local : Section::kept;
     if (is_global) keep_once(c, flag);
     return make_once(c, like, flag, {begins});
 }
-
-}  // namespace
 
 bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (c.beginning.member && c.beginning.path.empty() && !is_constant(*value)) {
@@ -366,7 +365,10 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     Routine& of = c.routine ? *c.routine : begin_of_globals(c, *value);
     const Variable& variable = *c.beginning.variable;
     const bool is_of_one = is_of_call(of, variable);
-    const bool is_kept = !type.is_reference() && variable.retention == Retention::retain &&
+    const bool is_as_instance =
+        variable.retention == Retention::unsaid && of.pou->kind == PouKind::function_block;
+    const bool is_kept = !type.is_reference() &&
+                         (is_as_instance || variable.retention == Retention::retain) &&
                          (!is_of_one || variable.space == Space::global);
     (is_of_one ? of.call_begins : of.begins)
         .push_back(is_kept ? make_once_in_all_runs(c, of, s) : s);

@@ -20,15 +20,28 @@ struct ChartWriter {
     Block out = {};
 
     Expression like(const Token& token) const { return {.token = token, .place = token.place}; }
-    /// `of.part`, as it is called in names: what a chart keeps beside what its user declares.
+    /// `of part`, as none of a source is called: what a chart keeps beside what its user declares.
     std::string_view part_name(std::string_view of, std::string_view part) {
-        return c.checked.names.emplace_back(fmt::format("{}{}.{}", within(), of, part));
+        return c.checked.names.emplace_back(fmt::format("{}{} {}", within(), of, part));
     }
     std::string within() const {
         return &pou == routine.pou ? std::string() : fmt::format("{}.", pou.name.text);
     }
     Expression* name(const Token& at, std::string_view text) {
         return make_name(c, like(at), text);
+    }
+    /// An action, or what stands in its place: `lamps.red`, whose text is one.
+    Expression* named(const Token& action) {
+        if (routine.methods.contains(action.text)) return name(action, action.text);
+        std::string_view rest = action.text;
+        Expression* made = nullptr;
+        while (!rest.empty()) {
+            const std::size_t end = std::min(rest.find('.'), rest.size());
+            const std::string_view part = rest.substr(0, end);
+            made = made ? make_member(c, made, part) : name(action, part);
+            rest.remove_prefix(std::min(end + 1, rest.size()));
+        }
+        return made;
     }
     Expression* active(const Token& step) { return make_member(c, name(step, step.text), "X"); }
     Expression* next(const Token& step) { return make_member(c, name(step, step.text), "_X"); }
@@ -92,6 +105,9 @@ inline bool is_step_action(const ChartAssociation& a) {
 inline bool is_stored_with_time(const ChartAssociation& a) {
     return is(a, "SD") || is(a, "DS") || is(a, "SL");
 }
+
+/// Whether it is an ACTION, of the block or of an instance; else it is a BOOL.
+bool is_called(ChartWriter& w, const Token& action);
 
 /// One association of one action, and the number that what it keeps is known by.
 struct ActionUse {

@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/chart_writer.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
@@ -65,9 +66,10 @@ void check_steps(Checking& c, const Pou& pou, const Chart& chart) {
                "put it into an ACTION of a step");
 }
 
-bool check_association(Checking& c, const Routine& routine, const ChartAssociation& a) {
+bool check_association(ChartWriter& w, const ChartAssociation& a) {
+    Checking& c = w.c;
     const Token& q = a.qualifier;
-    if (!is_known(routine, a))
+    if (!is_known(w.routine, a))
         return c.fail(code::not_declared, q.place, fmt::format("'{}' is no qualifier", q.text),
                       "there are N, S, R, P, P0, P1, L, D, SD, DS and SL");
     const Qualifier* known = find_called(qualifiers, qualifier_of(a), &Qualifier::name);
@@ -77,9 +79,13 @@ bool check_association(Checking& c, const Routine& routine, const ChartAssociati
                       fmt::format("{} takes {} time", qualifier_of(a), has_time ? "a" : "no"),
                       has_time ? fmt::format("write ({}, T#1s)", qualifier_of(a))
                                : fmt::format("write ({})", qualifier_of(a)));
-    if (routine.methods.contains(a.action.text)) return true;
-    const Variable* variable = find_variable(c, a.action);
-    if (variable && variable->type == &bool_type) return true;
+    if (is_called(w, a.action)) return true;
+    const bool is_elsewhere = a.action.text.find('.') != std::string_view::npos;
+    Expression* member = is_elsewhere ? w.named(a.action) : nullptr;
+    if (is_elsewhere && !check(c, member)) return false;
+    const Variable* variable = is_elsewhere ? nullptr : find_variable(c, a.action);
+    const Type* type = member ? member->type : variable ? variable->type : nullptr;
+    if (type == &bool_type) return true;
     return c.fail(code::not_declared, a.action.place,
                   fmt::format("'{}' is neither an ACTION nor a BOOL", a.action.text),
                   fmt::format("write ACTION {}: ... END_ACTION", a.action.text));
@@ -251,15 +257,13 @@ Expression* write_control(ChartWriter& w, const Token& action, const std::vector
 }
 
 Statement* call_of(ChartWriter& w, const Token& action) {
-    return make_call_statement(w.c,
-                               make_call(w.c, w.like(action), w.name(action, action.text), {}));
+    return make_call_statement(w.c, make_call(w.c, w.like(action), w.named(action), {}));
 }
 
 /// An ACTION runs while it is asked for, and once more behind; a BOOL is whether it is.
 void write_action(ChartWriter& w, const Token& action, const std::vector<ActionUse>& uses) {
     Expression* now = write_control(w, action, uses);
-    if (!w.routine.methods.contains(action.text))
-        return w.out.push_back(w.set(w.name(action, action.text), now));
+    if (!is_called(w, action)) return w.out.push_back(w.set(w.named(action), now));
     const auto kept = [&](std::string_view part) { return w.kept(action, action.text, part); };
     w.out.push_back(w.when(w.joined(Word::or_, now, kept("ran")), {call_of(w, action)}));
     w.out.push_back(w.set(kept("ran"), kept("runs")));
@@ -295,8 +299,8 @@ void write_actions_of_codesys(ChartWriter& w, const Chart& chart) {
         const Variable* flag = find_in(w.routine.names, flag_of_action(w, action));
         if (flag && flag->type && flag->type->name == "ACTION")
             w.out.push_back(w.set(make_member(w.c, w.name(action, flag->text), "X"), now));
-        if (!w.routine.methods.contains(action.text)) {
-            w.out.push_back(w.set(w.name(action, action.text), now));
+        if (!is_called(w, action)) {
+            w.out.push_back(w.set(w.named(action), now));
             continue;
         }
         Expression* ends = w.joined(Word::and_, kept("ran"), w.negated(now));
@@ -452,6 +456,20 @@ void declare_charts(Checking& c, Routine& routine) {
             variable->section = Section::input;  // who calls an action gives it
 }
 
+bool is_called(ChartWriter& w, const Token& action) {
+    const std::size_t point = action.text.rfind('.');
+    if (w.routine.methods.contains(action.text)) return true;
+    if (point == std::string_view::npos) return false;
+    Token owner = action, first = action;
+    owner.text = action.text.substr(0, point);
+    first.text = action.text.substr(0, action.text.find('.'));
+    if (!find_variable(w.c, first)) return false;
+    Expression* instance = w.named(owner);
+    const Type* type = check(w.c, instance);
+    return type && type->kind == Kind::block &&
+           find_in(type->routine->methods, action.text.substr(point + 1)) != nullptr;
+}
+
 Block chart_statements(Checking& c, Routine& routine) {
     if (!routine.pou->chart) return {};
     const Chart& chart = *routine.pou->chart;
@@ -460,7 +478,7 @@ Block chart_statements(Checking& c, Routine& routine) {
     bool is_right = c.out.empty();
     for (const ChartStep& step : chart.steps)
         for (const ChartAssociation& association : step.associations)
-            is_right = check_association(c, keeper, association) && is_right;
+            is_right = check_association(w, association) && is_right;
     if (!is_right) return {};
     write_times(w, chart);
     Block times = std::exchange(w.out, {});

@@ -4,6 +4,9 @@
 
 namespace lineshaft::st {
 
+/// `x AT %I*`: it is wired from outside. False: it is at an address.
+bool is_left_open(const Token& at, Variable& variable);
+
 /// `x AT %QW4 : INT`: the variable is a view of the process image. One at `%I*` is none.
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared);
 

@@ -15,6 +15,16 @@ namespace lineshaft::st {
 
 namespace {
 
+/// In CODESYS and TwinCAT several underlines may stand between two digits.
+std::optional<Wide> read_whole_number(std::string_view text, const Dialect& dialect) {
+    if (dialect.vendor != Vendor::codesys || text.find("__") == text.npos)
+        return read_integer(text);
+    std::string plain(text);
+    for (std::size_t at = plain.find("__"); at != plain.npos; at = plain.find("__"))
+        plain.erase(at, 1);
+    return read_integer(plain);
+}
+
 const Type* check_number(Checking& c, Expression& e) {
     const std::string_view text = e.token.text;
     if (e.token.word == Word::real) {
@@ -25,7 +35,7 @@ const Type* check_number(Checking& c, Expression& e) {
         e.constant.real = *value;
         return &any_real_type;
     }
-    const auto value = read_integer(text);
+    const auto value = read_whole_number(text, e.place.dialect());
     if (!value)
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a number of at most 64 bits", text),

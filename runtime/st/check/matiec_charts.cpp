@@ -8,7 +8,7 @@ namespace {
 class MatiecAction {
   public:
     MatiecAction(ChartWriter& w, const Token& action)
-        : w_(w), action_(action), is_body_(w.routine.methods.contains(action.text)) {}
+        : w_(w), action_(action), is_body_(is_called(w, action)) {}
 
     void write(const std::vector<ActionUse>& uses) {
         if (is_body_) put(state(), w_.truth(action_, false));
@@ -23,7 +23,7 @@ class MatiecAction {
     Expression* kept(std::string_view part) { return w_.kept(action_, action_.text, part); }
     Expression* truth(bool value) { return w_.truth(action_, value); }
     Expression* both(Expression* a, Expression* b) { return w_.joined(Word::and_, a, b); }
-    Expression* state() { return is_body_ ? kept("runs") : w_.name(action_, action_.text); }
+    Expression* state() { return is_body_ ? kept("runs") : w_.named(action_); }
     Expression* active(const ActionUse& use) { return w_.active(use.step->name); }
     Expression* before(const ActionUse& use) {
         return w_.kept(use.step->name, use.step->name.text, "before");
@@ -72,7 +72,7 @@ class MatiecAction {
 
     void write_body() {
         put(state(), w_.joined(Word::or_, state(), kept("stored")));
-        Expression* call = make_call(w_.c, w_.like(action_), w_.name(action_, action_.text), {});
+        Expression* call = make_call(w_.c, w_.like(action_), w_.named(action_), {});
         w_.out.push_back(w_.when(state(), {make_call_statement(w_.c, call)}));
     }
 

@@ -81,8 +81,8 @@ const Type* use_only_one(Checking& c, Expression*& e) {
     return e->type;
 }
 
-/// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
-/// list.
+}  // namespace
+
 bool refuse_of_list(Checking& c, const Expression& e) {
     const Expression& list = *e.operands[0];
     if (list.kind != E::name || list.token.local || list.type || find_variable(c, list.token))
@@ -99,8 +99,6 @@ bool refuse_of_list(Checking& c, const Expression& e) {
            suggest(e.token.text, names));
     return true;
 }
-
-}  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
     name_block_of_list(c, *e);

@@ -327,7 +327,7 @@ class Lexer {
             return void(add(Word::integer));
         }
         bool real = false;
-        if (peek() == '.' && is_digit(peek(1)) && !is_after_dot()) {
+        if (peek() == '.' && (is_digit(peek(1)) || is_end_of_real()) && !is_after_dot()) {
             real = true;
             ++at_;
             digits();
@@ -339,6 +339,12 @@ class Lexer {
             digits();
         }
         add(real ? Word::real : Word::integer);
+    }
+
+    /// `10.` of CODESYS, at the '.'.
+    bool is_end_of_real() const {
+        return tokens_.source->dialect.vendor == Vendor::codesys && peek(1) != '.' &&
+               !is_letter(peek(1));
     }
 
     /// After `word.` a number is that of a bit, and a word a name.

@@ -25,12 +25,25 @@ void end_part(Parsing& p, std::string_view end, const Token& opener) {
     p.accept(Word::semicolon);
 }
 
-/// Action_Association : Name '(' ( Name ( ',' Expression ) ? ) ? ')'
-/// The second Name is a qualifier: N, S, R, P, P0, P1, or with a time L, D, SD, DS, SL.
+/// How many tokens `lamps.red` has from here on.
+std::size_t length_of_path(const Parsing& p) {
+    std::size_t length = 1;
+    while (p.next(length).word == Word::dot && p.is_name(length + 1)) length += 2;
+    return length;
+}
+
+/// Action_Association : Name ( '.' Name ) * ( '(' ( Name ( ',' Expression ) ? ) ? ')' ) ?
+/// The last Name is a qualifier: N, S, R, P, P0, P1, or with a time L, D, SD, DS, SL.
 /// CODESYS keeps actions at the step: _ENTRY, _ACTIVE and _EXIT of it.
 ChartAssociation parse_association(Parsing& p) {
     ChartAssociation made;
     made.action = expect_name(p, "the name of an action");
+    while (!p.panic && p.accept(Word::dot)) {
+        const Token part = expect_name(p, "a name behind the '.'");
+        made.action.place = made.action.place.to(part.place);
+        made.action.text =
+            p.tree.names.emplace_back(fmt::format("{}.{}", made.action.text, part.text));
+    }
     if (!p.accept(Word::open)) return made;
     if (p.is_name()) made.qualifier = p.take();
     if (p.accept(Word::comma)) made.time = parse_expression(p);
@@ -38,16 +51,17 @@ ChartAssociation parse_association(Parsing& p) {
     return made;
 }
 
-/// `Name;`, `Name(N);`, `Name(L, T#1s);`, where statements may stand, too.
+/// `Name;`, `lamps.red;`, `Name(N);`, `Name(L, T#1s);`, where statements may stand, too.
 bool at_association(const Parsing& p) {
     if (!p.is_name()) return false;
-    if (p.next().word != Word::open) return p.next().word == Word::semicolon;
+    const std::size_t length = length_of_path(p);
+    if (p.next(length).word != Word::open) return p.next(length).word == Word::semicolon;
     constexpr std::string_view plain[] = {"N",  "S",      "R",       "P",    "P0",
                                           "P1", "_ENTRY", "_ACTIVE", "_EXIT"};
     constexpr std::string_view timed[] = {"L", "D", "SD", "DS", "SL"};
-    const Word behind = p.next(3).word;
+    const Word behind = p.next(length + 2).word;
     const auto is_among = [&](std::span<const std::string_view> names) {
-        return find_called(names, p.next(2).text) != nullptr;
+        return find_called(names, p.next(length + 1).text) != nullptr;
     };
     return behind == Word::close ? is_among(plain) : behind == Word::comma && is_among(timed);
 }

@@ -261,15 +261,12 @@ TEST_CASE("a chart's divergences and convergences, actions and conditions") {
 x := x + 1;
 
 END_ACTION
-ACTION _action2:
-motor.Turn();
-END_ACTION
 INITIAL_STEP Begin:
 END_STEP
 STEP Left:
     b(L, T#1s);
     _action1;
-    _action2(S);
+    motor.Turn(S);
 END_STEP
 STEP Right:
 END_STEP

@@ -184,8 +184,9 @@ TEST_CASE("a drawn body is told by the POU's name") {
     text.replace(text.find("<ST>"), 4, "<UML>");
     text.replace(text.find("</ST>"), 5, "</UML>");
     const std::string path = write(folder, "Ramp.TcPOU", text);
-    CHECK(found(path).starts_with(path + ":9:7: error[L0903]: the body of 'Ramp' is drawn (UML), "
-                                         "and only Structured Text, LD, FBD and CFC are read\n"));
+    CHECK(found(path).starts_with(path +
+                                  ":9:7: error[L0903]: the body of 'Ramp' is drawn (UML), "
+                                  "and only Structured Text, LD, FBD, SFC and CFC are read\n"));
 }
 
 TEST_CASE("a transition is a method that says whether it holds") {
