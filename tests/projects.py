@@ -541,7 +541,7 @@ def check_binary_libraries():
           "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\n\tframe(enable := TRUE);\nEND_PROGRAM\n")
     said = run("check", "Binary")
     assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
-    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_Power, MC_BR_Reset, FRM_write" in said, said
+    assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_BR_Reset, FRM_write" in said, said
     run("new", "binary", "--from", "Binary")
     write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n  - {at: 95 ms, P.frame.status: 9999}\n")
     run("run", "binary.yaml", "--quiet")
@@ -696,6 +696,14 @@ def check_editors_of_matiec():
     write("of_editors.yaml", (work / "of_editors.yaml").read_text() + "expect:\n  - {at: end, Main.n: 7}\n  - {at: end, Main.of_wide: 5}\n"
           "  - {at: end, Main.second: 4}\n")
     run("run", "of_editors.yaml", "--quiet")
+    for name in ("Main.st", "with_scada.st"):
+        write(f"editors/{name}", "PROGRAM Main\n  VAR n : INT; END_VAR\n  n := 1;\nEND_PROGRAM\n\n\nCONFIGURATION Config0\n\n  RESOURCE Res0 ON PLC\n"
+              "    TASK task0(INTERVAL := T#20ms,PRIORITY := 0);\n    PROGRAM instance0 WITH task0 : Main;\n  END_RESOURCE\nEND_CONFIGURATION\n")
+    assert run("check", "editors").startswith("ok"), "what an editor generates of its plc.xml"
+    for name in ("plc.st", "generated_plc.st"):
+        shutil.copy(work / "editors/Main.st", write(f"generated/{name}", ""))
+    write("generated/plc.st", (work / "generated/plc.st").read_text() + "FUNCTION twice : INT\n  VAR_INPUT x : INT; END_VAR\n  twice := 2 * x;\nEND_FUNCTION\n")
+    assert run("check", "generated").startswith("ok"), "generated_plc.st is what plc.st begins with"
     listed = '<globalVars name="G"{}><variable name="{}"><type><INT/></type>' + begun.format(3) + "</variable></globalVars>"
     write("mixed.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0200"><fileHeader productName="CODESYS"/><types><dataTypes/><pous>'
           '<pou name="P" pouType="program"><interface><localVars><variable name="a"><type><array><dimension lower="1" upper="MOST"/><baseType><INT/></baseType>'
@@ -892,6 +900,38 @@ def check_mapp():
     run("run", "mapp.yaml", "--quiet")
 
 
+def check_mapp_motion():
+    """B&R: an axis of the configuration is one of the program, which mapp Motion's blocks move by its address; a library of another version stays declared."""
+    write("Motion/Physical/one/cpu/mappMotion/Axes.axis", '<?xml version="1.0"?>\n<Configuration>\n  <Element ID="gFirst" Type="axis"/>\n'
+          '  <Element ID="gSecond" Type="axis"/>\n  <Element ID="gSector" Type="sector"/>\n</Configuration>\n')
+    write("Motion/Logical/Track.typ", "TYPE\n\tMcSectorType : STRUCT\n\t\tcontrolif : UDINT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Motion/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
+    write("Motion/Logical/P/Variables.var", "VAR\n\tbasic : MpAxisBasic;\n\tpar : MpAxisBasicParType;\n\tstep : USINT;\n\tpower : MC_Power;\n\tmove : MC_MoveAbsolute;\n"
+          "\tstatus : MC_ReadStatus;\n\tis_connected, is_sector : BOOL;\nEND_VAR\n")
+    write("Motion/Logical/P/Main.st", "PROGRAM _INIT\n\tgSecond := gSecond;\n\tpar.Velocity := 100;\n\tpar.Acceleration := 1000;\n\tpar.Deceleration := 1000;\n\tpar.Position := 20;\n"
+          "END_PROGRAM\nPROGRAM _CYCLIC\n\tbasic.MpLink := ADR(gFirst);\n\tbasic.Enable := TRUE;\n\tbasic.Parameters := ADR(par);\n"
+          "\tis_connected := gFirst.controlif <> 0 AND gFirst.mappLinkInternal.Internal[0] <> 0;\n\tis_sector := gSector.controlif = 0;\n\tCASE step OF\n"
+          "\t\t0: IF basic.Info.ReadyToPowerOn THEN basic.Power := TRUE; step := 1; END_IF\n\t\t1: IF basic.PowerOn THEN basic.Home := TRUE; step := 2; END_IF\n"
+          "\t\t2: IF basic.IsHomed THEN basic.Home := FALSE; basic.MoveAbsolute := TRUE; step := 3; END_IF\n"
+          "\t\t3: IF basic.InPosition THEN basic.MoveAbsolute := FALSE; step := 4; END_IF\n\tEND_CASE\n\tbasic();\n"
+          "\tpower(Axis := ADR(gSecond), Enable := TRUE);\n\tmove(Axis := ADR(gSecond), Execute := power.Status, Position := 5, Velocity := 10, BufferMode := mcABORTING);\n"
+          "\tstatus(Axis := ADR(gSecond), Enable := TRUE);\nEND_PROGRAM\n")
+    assert run("check", "Motion").splitlines()[0] == "ok  Motion"
+    run("new", "motion", "--from", "Motion")
+    write("motion.yaml", (work / "motion.yaml").read_text() + "expect:\n  - {at: end, gFirst.position: 20 mm}\n  - {at: end, gSecond.position: 5 mm}\n  - {at: end, P.step: 4}\n"
+          "  - {at: end, P.is_connected: true}\n  - {at: end, P.is_sector: true}\n  - {at: end, P.status.StandStill: true}\n")
+    run("run", "motion.yaml", "--quiet")
+    write("Motion/Logical/Libraries/MpAxis/binary.lby",
+          '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>MpAxis.fun</File></Files></Library>\n')
+    write("Motion/Logical/Libraries/MpAxis/MpAxis.typ", "TYPE\n\tMpAxisBasicParType : STRUCT\n\t\tPosition : LREAL;\n\t\tHome : USINT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Motion/Logical/Libraries/MpAxis/MpAxis.fun", "FUNCTION_BLOCK MpAxisBasic\n\tVAR_INPUT\n\t\tMpLink : REFERENCE TO MpComIdentType;\n\t\tParameters : REFERENCE TO MpAxisBasicParType;\n"
+          "\t\tAxis : UDINT;\n\t\tTorqueLimit : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n")
+    write("Motion/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tpar.Home := 1;\n\tbasic(Axis := 1, Parameters := ADR(par), TorqueLimit := TRUE);\nEND_PROGRAM\n")
+    said = run("check", "Motion")
+    assert "of the library 'MpAxis' there are declarations alone, so this does nothing: MpAxisBasic" in said and "ok  Motion" in said, said
+
+
 def check_headers():
     """PLCopen XML of CODESYS has its texts and edges; that of others, Beremiz or OpenPLC, the standard's. Neither's counters go below 0."""
     body = ('<types><dataTypes/><pous><pou name="P" pouType="program"><interface><localVars>'
@@ -930,6 +970,13 @@ def check_task_classes():
                  "Slow: {type: Slow, task: Cyclic_4}"):
         assert line in text, text
     assert "Off: {" not in text, text
+    for cpu in ("one/X20", "two/X20"):
+        software = work / f"Classes/Physical/{cpu}/Cpu.sw"
+        software.write_text(software.read_text().replace("</SwConfiguration>", '  <TaskClass Name="Cyclic#3">\n'
+                            '    <Task Name="Vision" Source="Line.Vision.prg" Language="ANSIC" />\n    <Task Name="Web" Source="Line.Web.prg" Language="ANSIC" />\n'
+                            "  </TaskClass>\n</SwConfiguration>"))
+    said = run("check", "Classes")
+    assert said.count("written in C, and so not read and not run: Vision, Web") == 1, said
     write("classes.yaml", text + "expect:\n  - {at: end, Fast.n: 501}\n  - {at: end, Slow.n: 11}\n  - {at: end, Fast.counter.CV: 0}\n")
     run("run", "--quiet", "classes.yaml")
 
@@ -1230,6 +1277,13 @@ def check_openplc_editor():
     ladder.write_text(text[:text.index("{")])
     assert "has no rungs" in run("check", "editor4/", code=2)
     ladder.write_text(text)
+    native = "FUNCTION_BLOCK {0}\nVAR_OUTPUT\n\tpressed : bool;\nEND_VAR\n{1}\n"
+    write("editor4/pous/function-blocks/Button.cpp", native.format("Button", "/* C */\n#include <Arduino.h>\nvoid setup() { pinMode(18, INPUT); }\nvoid loop() {}"))
+    write("editor4/pous/function-blocks/Cloud.py", native.format("Cloud", "def block_loop():\n    pressed = True"))
+    write("editor4/pous/programs/asks.st", "PROGRAM asks\nVAR\n\tbutton : Button;\n\tcloud : Cloud;\n\tis_down : BOOL;\nEND_VAR\nbutton(pressed => is_down);\ncloud();\nEND_PROGRAM\n")
+    said = run("check", "editor4/")
+    for name, language in (("Button.cpp:1:16", "'Button' is written in C++"), ("Cloud.py:1:16", "'Cloud' is written in Python")):
+        assert f"{name}: warning" in said and f"{language}, so this does nothing" in said, said
     write("editor4/pous/functions/drawn.fbd", "FUNCTION drawn : INT\n\n{\n}\nEND_FUNCTION\n")
     assert "drawn.fbd:1:1: error" in run("check", "editor4/", code=2)
 
@@ -1537,6 +1591,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_task_classes()
     check_headers()
     check_mapp()
+    check_mapp_motion()
     check_organization_blocks()
     check_memory_bytes()
     check_softmotion()

@@ -597,6 +597,8 @@ def check_checkpoint(seed):
     (FOLDER / "live.yaml").unlink()
     lost = run("serve", "program.yaml", *files, "--resume", "--checkpoint", "at.checkpoint", "--http", "off")
     assert lost.returncode == 2 and "L0512" in lost.stderr, lost.stderr
+    of_serve = run("run", "program.yaml", "--resume", "--checkpoint", "at.checkpoint")
+    assert of_serve.returncode == 2 and "the checkpoint is of 'serve'" in of_serve.stderr and "'serve' goes on from what it wrote" in of_serve.stderr, of_serve.stderr
     other = run("serve", "program.yaml", "--resume", "--checkpoint", "at.checkpoint", "--http", "off")
     assert other.returncode == 2 and "--record" in other.stderr, other.stderr
 

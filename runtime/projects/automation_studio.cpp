@@ -31,6 +31,11 @@ std::string beginning_of(const fs::path& file) {
 std::string_view type_of_element(std::string_view kind) {
     if (kind == "axis") return "McAxisType";
     if (kind == "visioncomponent") return "ViComponentType";
+    if (kind == "assembly") return "McAssemblyType";
+    if (kind == "sector") return "McSectorType";
+    if (kind == "segment" || kind == "virtsegment") return "McSegmentType";
+    if (kind == "processpoint") return "McProcessPointType";
+    if (kind == "trackingpath") return "McTrackingPathType";
     return kind.starts_with("axesgroup") ? "McAxesGroupType" : "MpComIdentType";
 }
 

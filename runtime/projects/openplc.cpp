@@ -297,6 +297,23 @@ void read_ladder(const Reading& to, const std::shared_ptr<const SourceFile>& sou
     add_plcopen(to, xml.finish(source->path));
 }
 
+/// In C++ or Python: its pins are here, and do nothing.
+void read_pins(const Reading& to, const SourceFile& file) {
+    constexpr std::string_view last = "END_VAR";
+    const std::size_t end = file.text.rfind(last);
+    if (end == file.text.npos) return;
+    std::string variables;
+    Declarations declarations(
+        with_text(file, file.text.substr(0, end + last.size()) + "\nEND_FUNCTION_BLOCK\n"));
+    SourceFile made = *declarations.read(variables).finish(file.path);
+    made.read_as = ".matiec";
+    to.project.add(std::make_shared<const SourceFile>(std::move(made)));
+    to.out.warn(code::not_supported, declarations.name().place.mark(),
+                fmt::format("'{}' is written in {}, so this does nothing", declarations.name().text,
+                            has_ending(file.path, ".py") ? "Python" : "C++"),
+                "write what the program needs of it in Structured Text");
+}
+
 }  // namespace
 
 bool is_openplc_project(const fs::path& file) {
@@ -308,7 +325,7 @@ bool is_openplc_project(const fs::path& file) {
 }
 
 bool is_openplc_pou(const fs::path& file) {
-    constexpr std::string_view endings[] = {".st", ".ld", ".fbd", ".sfc", ".il"};
+    constexpr std::string_view endings[] = {".st", ".ld", ".fbd", ".sfc", ".il", ".cpp", ".py"};
     if (std::ranges::none_of(endings, [&](auto e) { return has_ending(file, e); })) return false;
     const fs::path project = project_of(file);
     return !project.empty() &&
@@ -347,6 +364,7 @@ void read_openplc_pou(const Reading& to, const std::string& path, const Mark& wh
     const auto source = read_source(path, to.out, where, json_limits);
     if (!source) return;
     if (has_ending(path, ".ld")) return read_ladder(to, source);
+    if (has_ending(path, ".cpp") || has_ending(path, ".py")) return read_pins(to, *source);
     if (!has_ending(path, ".st"))
         return to.out.add(code::not_supported, {source, 1, 1, 1},
                           "only ladders and Structured Text of OpenPLC Editor 4 are read",

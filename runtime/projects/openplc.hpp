@@ -16,7 +16,8 @@ bool is_left_to_openplc(const std::filesystem::path& file);
 /// Tasks, programs and globals of a project, and all below its folders `pous` and `datatypes`.
 void read_openplc_project(const Reading& to, const std::string& path, const Mark& where);
 
-/// Declarations as text, `name : TYPE AT %IX0.0`, and behind them Structured Text, or a ladder.
+/// Declarations as text, `name : TYPE AT %IX0.0`, and behind them Structured Text, or a ladder; of
+/// C++ and Python the declarations alone are taken.
 void read_openplc_pou(const Reading& to, const std::string& path, const Mark& where);
 
 }  // namespace lineshaft::projects

@@ -150,11 +150,26 @@ bool is_of_no_source(const std::string& file) {
     return false;
 }
 
-/// `build/`, which an editor writes anew out of the `plc.xml` beside it.
+/// Beremiz' and OpenPLC's.
+bool has_editors_project(const fs::path& folder) {
+    std::error_code unknown;
+    const fs::path project = folder / "plc.xml";
+    return fs::exists(project, unknown) && is_plcopen(project);
+}
+
+/// What an editor generates of the `plc.xml` beside it: `build/`, and a whole program where its
+/// user wants it; and `generated_plc.st`, which `plc.st` begins with.
 bool is_built(const std::string& file) {
     std::error_code unknown;
     const fs::path folder = fs::path(file).parent_path();
-    return folder.filename() == "build" && fs::exists(folder.parent_path() / "plc.xml", unknown);
+    if (folder.filename() == "build" && has_editors_project(folder.parent_path())) return true;
+    if (!ends_with(file, ".st")) return false;
+    if (fs::path(file).filename() == "generated_plc.st")
+        return fs::exists(folder / "plc.st", unknown);
+    if (!has_editors_project(folder)) return false;
+    Diagnostics unread;
+    const auto source = read_source(file, unread);
+    return source && source->text.find("\nCONFIGURATION ") != std::string::npos;
 }
 
 /// Beside `src` and `test` of a package of SIMATIC AX, which neither its program nor its tests are.

@@ -7,6 +7,7 @@
 
 #include "runtime/projects/automation_studio.hpp"
 #include "runtime/projects/xml.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
@@ -44,6 +45,32 @@ std::int64_t duration_of(const XmlFile& hardware, std::size_t number) {
     return us > 0 && us <= 86'400'000'000 ? us * 1000 : 0;
 }
 
+/// One warning for all programs in C, which no source stands for.
+class InC {
+  public:
+    explicit InC(const XmlFile& file) : file_(file) {}
+
+    bool take(pugi::xml_node program) {
+        if (!file_.plain(program.attribute("Language")).starts_with("ANSI")) return false;
+        if (names_.empty()) first_ = file_.mark_of_tag(program);
+        names_.push_back(name_of_program(file_.plain(program.attribute("Source"))));
+        return true;
+    }
+
+    void tell(Diagnostics& out) const {
+        if (!names_.empty())
+            out.warn(code::not_supported, first_,
+                     fmt::format("written in C, and so not read and not run: {}",
+                                 fmt::join(names_, ", ")),
+                     "write in Structured Text what the other programs need of it");
+    }
+
+  private:
+    const XmlFile& file_;
+    std::vector<std::string> names_;
+    Mark first_;
+};
+
 }  // namespace
 
 bool is_software_of_cpu(const fs::path& file) {
@@ -57,6 +84,7 @@ void read_task_classes(const Reading& to, const std::string& path, const Mark& w
     const fs::path beside = fs::path(path).parent_path().parent_path() / "Hardware.hw";
     Diagnostics unread;
     const auto hardware = XmlFile::read(beside.string(), unread);
+    InC in_c(*file);
     for (const pugi::xml_node element : file->root().children("TaskClass")) {
         const std::string name = file->plain(element.attribute("Name"));
         const std::size_t number = number_of_class(name);
@@ -66,11 +94,12 @@ void read_task_classes(const Reading& to, const std::string& path, const Mark& w
                          .every = said > 0 ? said : usual_ms[number - 1] * 1'000'000,
                          .priority = static_cast<std::int64_t>(number)};
         for (const pugi::xml_node program : element.children("Task"))
-            if (file->plain(program.attribute("Disabled")) != "true")
+            if (file->plain(program.attribute("Disabled")) != "true" && !in_c.take(program))
                 task.programs.push_back({{name_of_program(file->plain(program.attribute("Source"))),
                                           file->mark_of_tag(program)}});
         if (!task.programs.empty()) to.project.tasks.push_back(std::move(task));
     }
+    in_c.tell(to.out);
 }
 
 }  // namespace lineshaft::projects

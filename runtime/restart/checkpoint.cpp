@@ -24,7 +24,7 @@ constexpr std::int64_t checkpoint_layout = 5;  // of the state
 constexpr std::size_t longest_head = 1 << 16;  // bytes
 
 /// What is wrong with a checkpoint; empty when nothing is.
-std::string refusal(const Json& head, const std::string& state, const std::string& program) {
+std::string refusal(const Json& head, const std::string& state, const RunBy& by) {
     const auto of = integer_at(head, "lineshaft_checkpoint", 1, checkpoint_layout);
     if (!of) return "this is not a checkpoint";
     if (*of < checkpoint_layout)
@@ -32,8 +32,13 @@ std::string refusal(const Json& head, const std::string& state, const std::strin
     if (text_at(head, "version") != version())
         return fmt::format("the checkpoint is of lineshaft {}, this is {}",
                            text_at(head, "version"), version());
-    if (text_at(head, "program") != program)
-        return "the checkpoint is of another program, of other parameters, or of another command";
+    if (text_at(head, "command") != by.command)
+        return fmt::format(
+            "the checkpoint is of '{}': a served machine has no end, and a run judges what is "
+            "expected from its start",
+            text_at(head, "command"));
+    if (text_at(head, "program") != by.program)
+        return "the checkpoint is of another program, or of other parameters";
     if (text_at(head, "state") != text_hash(state)) return "the checkpoint is not whole";
     return {};
 }
@@ -63,10 +68,11 @@ std::string fingerprint(const Program& program, const Machine& machine) {
     return text_hash(text);
 }
 
-std::string checkpoint_of(const std::string& program, std::int64_t time, const std::string& state) {
+std::string checkpoint_of(const RunBy& by, std::int64_t time, const std::string& state) {
     const Json head{{"lineshaft_checkpoint", checkpoint_layout},
                     {"version", version()},
-                    {"program", program},
+                    {"program", by.program},
+                    {"command", by.command},
                     {"time_ns", time},
                     {"state", text_hash(state)}};
     return head.dump() + "\n" + state;
@@ -79,7 +85,7 @@ std::string write_checkpoint(const std::string& path, const std::string& checkpo
     return file.error();
 }
 
-std::optional<std::string> read_checkpoint(const std::string& path, const std::string& program,
+std::optional<std::string> read_checkpoint(const std::string& path, const RunBy& by,
                                            Diagnostics& out) {
     int error = 0;
     std::string bytes = read_bytes(path, std::numeric_limits<std::size_t>::max(), error);
@@ -92,7 +98,7 @@ std::optional<std::string> read_checkpoint(const std::string& path, const std::s
     const Json head = parse_json(std::string_view(bytes).substr(0, std::min(end, longest_head)));
     std::string state = std::move(bytes);
     state.erase(0, std::min(end + 1, state.size()));
-    const std::string wrong = refusal(head, state, program);
+    const std::string wrong = refusal(head, state, by);
     if (wrong.empty()) return state;
     out.add(code::checkpoint_does_not_fit,
             {std::make_shared<SourceFile>(SourceFile{path, {}}), 0, 0, 1}, wrong,

@@ -144,8 +144,8 @@ class SingleRun {
     Machine& machine_;
     RunReport report_;
     Judge judge_{loaded_.linked.expectations};
-    std::string program_;  ///< fingerprint; empty when there are no checkpoints
-    std::string state_;    ///< of a checkpoint
+    RunBy by_{{}, options_.drive ? "serve" : "run"};  ///< without a program: no checkpoints
+    std::string state_;                               ///< of a checkpoint
     int retained_ = 0;
     std::optional<StateReader> begun_;
     TraceOrigin origin_;
@@ -230,13 +230,13 @@ RunResult SingleRun::step() {
 
 bool SingleRun::restart() {
     if (options_.checkpoint_every > 0 || options_.drive || options_.restart == Restart::hot)
-        program_ = fingerprint(loaded_.program, machine_);
+        by_.program = fingerprint(loaded_.program, machine_);
     if (options_.restart == Restart::warm && !options_.retain_path.empty())
         retained_ = read_retained(options_.retain_path, machine_, report_.refused);
     for (const Diagnostic& warning : report_.refused.warnings())
         report_.warnings.push_back(warning.message);
     if (options_.restart == Restart::hot) {
-        state_ = read_checkpoint(options_.checkpoint_path, program_, report_.refused).value_or("");
+        state_ = read_checkpoint(options_.checkpoint_path, by_, report_.refused).value_or("");
         begun_.emplace(state_);
     }
     return report_.refused.empty();
@@ -344,7 +344,7 @@ std::string SingleRun::checkpoint(std::int64_t time) {
     if (pulses_) pulses_->save(out);
     executive_->save(out);
     for (const Observer* observer : observers_) observer->save(out);
-    return checkpoint_of(program_, time, out.bytes());
+    return checkpoint_of(by_, time, out.bytes());
 }
 
 /// Stops the run when the user wants it, and when what it records cannot be written.

@@ -44,6 +44,13 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
     }
 }
 
+/// What another tool's project is kept in; empty: neither.
+std::string_view foreign_form(std::string_view text) {
+    if (text.starts_with("PK\x03\x04")) return "an archive";
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), text.size()));
+    return text.starts_with('<') ? "XML" : "";
+}
+
 /// `line.yaml` of `line` or `line.yml`, where that is there.
 std::string file_meant(const std::string& path) {
     std::error_code unknown;
@@ -89,6 +96,12 @@ std::optional<Node> parse_yaml(std::shared_ptr<const SourceFile> file, Diagnosti
     if (file->text.size() > limits.bytes) {
         out.add(code::file_too_large, {file, 1, 1, 1},
                 fmt::format("the file has more than {} bytes", limits.bytes));
+        return {};
+    }
+    if (const std::string_view form = foreign_form(file->text); !form.empty()) {
+        out.add(code::root_is_no_map, {file, 1, 1, 1},
+                fmt::format("this is {}, and no program of lineshaft", form),
+                "have the tool that made it export PLCopen XML (TC6), or give its Structured Text");
         return {};
     }
     const std::size_t before = out.count();

@@ -80,7 +80,8 @@ KeptRun::KeptRun(const std::string& program, std::int64_t time, std::string fold
 bool KeptRun::resume(const std::string& state) const {
     Loaded loaded = load(program_, text_);
     const std::string path = folder_ + "/run.checkpoint";
-    write(path, checkpoint_of(fingerprint(loaded.program, loaded.linked.machine), time_, state));
+    write(path,
+          checkpoint_of({fingerprint(loaded.program, loaded.linked.machine), "run"}, time_, state));
     loaded.linked.machine.end = time_ + goes_on;
     RunOptions options;
     options.flush = false;

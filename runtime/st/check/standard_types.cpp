@@ -54,7 +54,8 @@ const Type& type_of_bound(const Type* expected) {
     return expected && expected->kind == Kind::integer ? expected->plain() : dint_type;
 }
 
-/// Of the dimension that a variable says: MUX over those of all.
+/// Of the dimension that a variable says: MUX over those of all, whose fault a dimension that there
+/// is not stays in every dialect.
 const Type* check_chosen_bound(Checking& c, Expression*& e, const Type& result) {
     const bool is_lower = e->standard->typing == Typing::lower_bound;
     Expression *array = e->arguments[0].value, *wanted = e->arguments[1].value;
@@ -74,7 +75,11 @@ const Type* check_chosen_bound(Checking& c, Expression*& e, const Type& result) 
         if (!type->has_inner) break;
     }
     e = make_call(c, *e, make_name(c, *e->operands[0], "MUX"), std::move(choices));
-    if (!check(c, e, &lint_type)) return nullptr;
+    e->standard = find_standard_function("MUX");
+    e->type = &lint_type;
+    for (Argument& choice : e->arguments)
+        if (!check(c, choice.value, &lint_type) || !coerce(c, choice.value, lint_type))
+            return nullptr;
     convert(c, e, result);
     return e->type = &result;
 }
@@ -270,12 +275,10 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
     return suits ? type : refuse(c, call, "numbers", *type);
 }
 
-/// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with. One
-/// that stands for UPPER_BOUND of a dimension that is none stays a fault.
+/// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.
 void choose_of_others(Checking& c, Expression& call, const Type* type) {
     const Vendor vendor = call.place.dialect().vendor;
-    const bool is_written = same_name(call.operands[0]->place.text(), "mux");
-    if (!type || !is_written || same_name(call.arguments.back().name.text, "inelse")) return;
+    if (!type || same_name(call.arguments.back().name.text, "inelse")) return;
     if (vendor == Vendor::matiec && (type->is_scalar() || type->kind == Kind::text))
         call.arguments.push_back({{}, false, make_constant(c, call, *type, {}), nullptr});
     if (vendor == Vendor::codesys || vendor == Vendor::matiec)

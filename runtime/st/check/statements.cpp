@@ -419,6 +419,12 @@ void check(Checking& c, Statement*& slot) {
     }
 }
 
+/// `gAxis := gAxis;`, with which programs of B&R name what they only hand over.
+bool is_same_object(const Expression& target, const Expression& value) {
+    return target.kind == E::name && value.kind == E::name && target.variable &&
+           target.variable == value.variable;
+}
+
 void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
@@ -436,6 +442,8 @@ void check_assignment(Checking& c, Statement*& s) {
     if (type->kind == Kind::block && s->op == Word::assign && is_instance &&
         same_type(*type, *s->value->type))
         return;
+    if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
+        return void(s = make_sequence(c, s->place, {}));
     if (type->is_instance())
         return void(c.fail(code::cannot_be_assigned, s->place,
                            "an instance is not assigned as a whole",

@@ -48,6 +48,8 @@ constexpr StandardFunction times[] = {
     {"SUB_LDT_LDT(IN1, IN2: LDT): LTIME", "IN1 - IN2", Word::minus},
     {"CONCAT_DATE_TOD(IN1: DATE; IN2: TOD): DT", "the time of day IN2 of the date IN1", Word::plus},
     {"CONCAT_DATE_LTOD(IN1: DATE; IN2: LTOD): LDT", "the time of day IN2 of the date IN1", Word::plus},
+    {"CONCAT_LDATE_TOD(IN1: LDATE; IN2: TOD): LDT", "the time of day IN2 of the date IN1", Word::plus},
+    {"CONCAT_LDATE_LTOD(IN1: LDATE; IN2: LTOD): LDT", "the time of day IN2 of the date IN1", Word::plus},
     {"T_ADD(IN1: ANY_MAGNITUDE; IN2: TIME): ANY_MAGNITUDE", "IN1 + IN2, of a TIME, a TOD or a DT", Word::plus},
     {"T_SUB(IN1: ANY_MAGNITUDE; IN2: TIME): ANY_MAGNITUDE", "IN1 - IN2, of a TIME, a TOD or a DT", Word::minus},
     {"T_CONV(IN: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN as what is wanted, as TIME_TO_DINT(IN) gives it; also of and to a DTL",

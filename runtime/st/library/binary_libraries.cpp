@@ -13,6 +13,7 @@
 #include "runtime/st/library/library_names.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/types/elementary.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -52,6 +53,10 @@ bool takes_axis(const BlockType& kind, const Catalog& catalog) {
     });
 }
 
+bool is_pin(Section section) {
+    return section == Section::input || section == Section::output || section == Section::in_out;
+}
+
 /// What lineshaft has of its own.
 class Known {
   public:
@@ -61,12 +66,30 @@ class Known {
         const BlockType* kind = find_called(catalog_.types(), name.text, &BlockType::name);
         return (kind && !kind->is_device() && !takes_axis(*kind, catalog_)) ||
                find_standard_function(name.text) || is_in_standard_source(name.text) ||
-               is_conversion(name.text) || names_in(library_of(name)).contains(name.text);
+               is_conversion(name.text) || standard_type_name(name.text) != name.text ||
+               names_in(library_of(name)).contains(name.text);
+    }
+
+    /// A library whose blocks have pins that are not here is of another version: all of it is
+    /// meant as it is declared.
+    void note_version(const Pou& unit) {
+        const std::string library = library_of(unit.name);
+        for (const LibraryFile& file : catalog_.libraries()) {
+            const NameSet words = same_name(file.library, library)
+                                      ? LibraryNames::words_of(file, unit.name.text)
+                                      : NameSet();
+            const auto is_missing = [&](const Declaration* pin) {
+                return !words.empty() && !words.contains(pin->name.text);
+            };
+            for (const DeclarationBlock& block : unit.blocks)
+                if (is_pin(block.section) && std::ranges::any_of(block.declarations, is_missing))
+                    names_[library].clear();
+        }
     }
 
   private:
     const NameSet& names_in(const std::string& library) {
-        const auto [it, is_new] = libraries_.try_emplace(library);
+        const auto [it, is_new] = names_.try_emplace(library);
         if (!is_new) return it->second;
         for (const LibraryFile& file : catalog_.libraries())
             if (same_name(file.library, library))
@@ -76,7 +99,7 @@ class Known {
     }
 
     const Catalog& catalog_;
-    std::map<std::string, NameSet> libraries_;
+    std::map<std::string, NameSet> names_;  ///< of libraries
 };
 
 /// Names of types, functions and variables in sources that have bodies.
@@ -114,6 +137,9 @@ void answer(Tree& tree, Pou& unit) {
 
 void leave_out_declared(Tree& tree, const Catalog& catalog) {
     Known known(catalog);
+    for (const Pou* unit : tree.units)
+        if (unit->kind == PouKind::function_block && is_binary(unit->name))
+            known.note_version(*unit);
     const auto is_here = [&](const Token& name) { return is_binary(name) && known.has(name); };
     std::erase_if(tree.types, [&](const TypeDeclaration& type) { return is_here(type.name); });
     std::erase_if(tree.units, [&](const Pou* unit) { return is_here(unit->name); });

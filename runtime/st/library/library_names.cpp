@@ -50,6 +50,11 @@ bool is_everyday(std::string_view name) {
     return name == "RUN" || name == "TEST";
 }
 
+/// B&R's of axes.
+bool is_of_mapp(std::string_view library) {
+    return library.starts_with("Mc") || library.starts_with("Mp");
+}
+
 bool is_helper(std::string_view name) {
     return name.front() >= 'a' && name.front() <= 'z';
 }
@@ -117,8 +122,7 @@ NameSet declared_names(const Tree& tree) {
     return names;
 }
 
-/// A block, or a structure, with its parts. Empty where it is none, or has a base, whose parts
-/// stand elsewhere.
+/// A block, or a structure, with its parts.
 std::string_view block_in(const LibraryFile& file, std::string_view name) {
     const auto unit_in = [&](const std::string& head, std::string_view end) {
         const std::size_t begin = file.text.find(head);
@@ -168,6 +172,14 @@ std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file)
     return names;
 }
 
+NameSet LibraryNames::words_of(const LibraryFile& file, std::string_view name) {
+    NameSet words;
+    std::string_view unit = block_in(file, name);
+    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
+        words.insert(word);
+    return words;
+}
+
 void LibraryNames::note_libraries(const Tokens& tokens) {
     if (catalog_.libraries().empty()) return;
     for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
@@ -192,6 +204,8 @@ void LibraryNames::note(const Token& name) {
     names_.insert(it->first);
     if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
+    const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
+    if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);
 }
 
 /// A block of the catalogue that another one extends.
@@ -282,11 +296,8 @@ void LibraryNames::note_pins(const Tree& tree) {
 std::optional<std::size_t> LibraryNames::pins_of(const LibraryFile& file,
                                                  std::string_view name) const {
     const NameSet* named = find_in(pins_, name);
-    std::string_view unit = block_in(file, name);
-    if (!named || named->empty() || unit.empty()) return {};
-    NameSet words;
-    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
-        words.insert(word);
+    const NameSet words = named ? words_of(file, name) : NameSet();
+    if (!named || named->empty() || words.empty()) return {};
     return std::ranges::count_if(*named, [&](auto pin) { return words.contains(pin); });
 }
 
@@ -321,9 +332,13 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
         return (f->library == "Beremiz") == of_matiec_.contains(name);
     };
     if (std::ranges::any_of(files, is_of_matiec)) std::erase_if(files, std::not_fn(is_of_matiec));
+    const bool in_mapp = of_mapp_.contains(name);
+    const auto fits_mapp = [&](const LibraryFile* f) { return is_of_mapp(f->library) == in_mapp; };
+    if (std::ranges::any_of(files, fits_mapp)) std::erase_if(files, std::not_fn(fits_mapp));
     for (const LibraryFile* file : files)
         if (taken_libraries_.contains(file->library)) return file;
     if (in_twincat && is_of_twincat(files.front())) return files.front();
+    if (in_mapp && is_of_mapp(files.front()->library)) return files.front();
     return is_catalogs ? nullptr : files.front();
 }
 

@@ -16,8 +16,8 @@ namespace lineshaft::st {
 ///   - for a name of it that the sources use and nobody else has: they declare no type, unit,
 ///     global variable or value of an enumeration of that name, nor has the catalogue it;
 ///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
-///     stands in a file of TwinCAT's and the library is one of its, or if the sources name pins of
-///     it that the catalogue's block has not;
+///     stands in a file of TwinCAT's or of Automation Studio's and the library is one of its, or if
+///     the sources name pins of it that the catalogue's block has not;
 ///   - for `EXTENDS TON` and its like in CODESYS and TwinCAT: `extended_TON`;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:
@@ -46,6 +46,10 @@ class LibraryNames {
     /// and global variables, by the lines that they stand in.
     static std::vector<std::string_view> declared_in(const LibraryFile& file);
 
+    /// The words of a block, or of a structure, of a file: among them its pins, or members. Empty
+    /// where it is none, or has a base, whose parts stand elsewhere.
+    static NameSet words_of(const LibraryFile& file, std::string_view name);
+
     struct Index;
 
   private:
@@ -66,7 +70,7 @@ class LibraryNames {
     const Catalog& catalog_;
     const Index& index_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
-    std::set<std::string_view> names_, of_twincat_, of_matiec_,
+    std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,
         of_siemens_;                            ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
     std::set<std::string_view> said_;           ///< libraries, and names in full

@@ -109,7 +109,14 @@ TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
         return report.refused.list().front().message;
     };
     CHECK(message("02_gear.yaml") ==
-          "the checkpoint is of another program, of other parameters, or of another command");
+          "the checkpoint is of another program, or of other parameters");
+    std::string of_serve = whole;
+    const std::string command = R"("command":"run")";
+    of_serve.replace(of_serve.find(command), command.size(), R"("command":"serve")");
+    std::ofstream(options.checkpoint_path, std::ios::binary) << of_serve;
+    CHECK(message("03_ratio_change.yaml") ==
+          "the checkpoint is of 'serve': a served machine has no end, and a run judges what is "
+          "expected from its start");
     for (const std::size_t size : {whole.size() - 1, whole.size() / 2}) {
         std::ofstream(options.checkpoint_path, std::ios::binary) << whole.substr(0, size);
         CHECK(message("03_ratio_change.yaml") == "the checkpoint is not whole");
