@@ -424,7 +424,7 @@ bool rewrite_property(Checking& c, Statement*& s) {
         name_block_of_list(c, *target);
         if (qualified_name(c, *target) || enumeration_of(c, *target)) return false;
         if (is_type_or_routine(c, *target->operands[0])) return false;
-        if (refuse_member_of_namespace(c, *target)) return true;
+        if (refuse_member_of_namespace(c, *target) || refuse_of_list(c, *target)) return true;
         if (!check(c, target->operands[0])) return true;
     } else if (target->kind != E::name || target->variable) {
         return false;
