@@ -158,6 +158,12 @@ def check_page():
     assert "page: 1 of 2 POUs, types and lists have no mistake; 0 tasks, 0 libraries\n" in page, page
     assert re.search(r"\n +1 +1  L0904 '\.\.\.' is not declared\n +page/B\.xml:5:", page), page
     assert "page/B.xml:5:99: error[L0904]: 'nobody' is not declared (network 1, contact 1)" in page, page
+    write("parts/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
+    write("parts/Logical/P/Variables.var", "VAR\n\tn : Nowhere;\nEND_VAR\n")
+    write("parts/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tm := 1;\nEND_PROGRAM\n")
+    page = run("check", "parts", code=2)
+    assert "parts: 0 of 1 POUs, types and lists have no mistake" in page and "'Nowhere' is not a type" in page, page
     assert run("check", "page/A.xml") == "ok  page/A.xml\n"
     assert "P.b" not in run("show", "page/A.xml") and "b := NOT a;\n" in run("show", "page/A.xml")
     listed = write("listed.xml", drawn("").replace("<LD>\n\n</LD>", "<IL><p>LD a\nSTN b</p></IL>"))

@@ -35,24 +35,26 @@ std::string cause_of(const Diagnostic& diagnostic) {
     return cause;
 }
 
-/// Lines of a file that one text of a project has.
-struct Lines {
+/// Of a file, where what one text of a project has of it begins.
+struct Part {
     std::size_t source = 0;
-    int first = 0, last = 0;
+    int first = 0;
 };
 
-using PartsOfFiles = std::map<std::string, std::vector<Lines>>;
+using PartsOfFiles = std::map<std::string, std::vector<Part>>;
 
 PartsOfFiles parts_of(const WholeProject& project) {
     PartsOfFiles parts;
     for (std::size_t i = 0; i < project.own; ++i) {
         const SourceFile& source = *project.project.sources[i];
-        Lines lines{i, source.excerpts.empty() ? 1 : source.excerpts.front().place.line, 0};
-        for (const Excerpt& excerpt : source.excerpts) {
-            lines.first = std::min(lines.first, excerpt.place.line);
-            lines.last = std::max(lines.last, excerpt.place.line);
+        std::map<std::string, int> firsts;
+        if (source.excerpts.empty()) firsts[source.path] = 1;
+        for (const auto& [begin, place, is_copied] : source.excerpts) {
+            const std::string& file = place.file ? place.file->path : source.path;
+            int& first = firsts.try_emplace(file, place.line).first->second;
+            first = std::min(first, place.line);
         }
-        parts[source.path].push_back(lines);
+        for (const auto& [file, first] : firsts) parts[file].push_back({i, first});
     }
     return parts;
 }
@@ -69,10 +71,10 @@ std::set<std::size_t> with_mistakes(const WholeProject& project, const Diagnosti
         const auto file =
             diagnostic.mark.file ? parts.find(diagnostic.mark.file->path) : parts.end();
         if (file == parts.end()) continue;
-        const Lines* found = nullptr;
-        for (const Lines& lines : file->second)
-            if (lines.first <= diagnostic.mark.line && (!found || lines.first > found->first))
-                found = &lines;
+        const Part* found = nullptr;
+        for (const Part& part : file->second)
+            if (part.first <= diagnostic.mark.line && (!found || part.first > found->first))
+                found = &part;
         if (found) wrong.insert(found->source);
     }
     return wrong;

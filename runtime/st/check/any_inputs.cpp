@@ -55,7 +55,7 @@ void become_any(Checking& c, Expression*& value, const Type& type) {
         value->type = &type;
         return;
     }
-    Expression* place = make_call(c, "ADR", value);
+    Expression* place = make_call(c, "__SYSTEM.ADR", value);
     const Type* pointer = check(c, place);
     if (!pointer) return;
     const Type& given = *pointer->element;

@@ -77,7 +77,7 @@ Statement* fill(Checking& c, const Statement& s, Expression* value, Expression* 
                 Expression* to) {
     Variable& i = counter(c, "%moved");
     Expression* element = make(c, E::index, *to);
-    element->operands[0] = make_call(c, "ADR", to);
+    element->operands[0] = make_call(c, "__SYSTEM.ADR", to);
     element->arguments.push_back({.value = make_use(c, *to, i)});
     Statement* loop = make_with(c, s, make_constant(c, *to, lint_type, {}));
     loop->kind = S::for_;
@@ -122,8 +122,8 @@ Statement* move(Checking& c, const Expression& like, Expression* from, Expressio
     Expression* size = make_constant(c, *count, lint_type, {.integer = Wide{bytes_of(*to->type)}});
     Expression* bytes = make_binary(c, like.place, like.place, Word::times, count, size);
     return make_call_statement(c, make_call(c, like, make_name(c, like, "MEMCPY"),
-                                            {{.value = make_call(c, "ADR", to)},
-                                             {.value = make_call(c, "ADR", from)},
+                                            {{.value = make_call(c, "__SYSTEM.ADR", to)},
+                                             {.value = make_call(c, "__SYSTEM.ADR", from)},
                                              {.value = bytes}}));
 }
 

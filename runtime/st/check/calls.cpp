@@ -357,7 +357,26 @@ static void name_instance_of_block(Checking& c, Expression*& e) {
         e = make_call(c, *e, instance, e->arguments);
 }
 
+/// Of the standard.
+static const Type* check_function(Checking& c, Expression*& e, const Type* expected) {
+    if (const auto given = check_reference_call(c, e, expected)) return *given;
+    if (const auto given = check_place_call(c, e)) return *given;
+    return check_standard_function(c, e, expected);
+}
+
+/// `__SYSTEM.ADR(x)`, which the checker puts in: of the standard, whatever has that name beside it.
+static std::optional<const Type*> check_put_in(Checking& c, Expression*& e, const Type* expected) {
+    constexpr std::string_view system = "__SYSTEM.";
+    const Expression& callee = *e->operands[0];
+    const std::string_view name = callee.token.text;
+    if (callee.kind != E::name || !name.starts_with(system) || c.find_routine(callee.token))
+        return {};
+    e = make_call(c, *e, make_name(c, callee, name.substr(system.size())), e->arguments);
+    return check_function(c, e, expected);
+}
+
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
+    if (const auto given = check_put_in(c, e, expected)) return *given;
     if (Expression* assertion = c.has_tests ? assertion_call(c, *e) : nullptr) {
         e = assertion;
         return check_test_statement(c, *e, as_statement);
@@ -420,11 +439,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(c, *e, as_statement);
-        if (is_function)
-            if (const auto given = check_reference_call(c, e, expected)) return *given;
-        if (is_function)
-            if (const auto given = check_place_call(c, e)) return *given;
-        if (is_function) return check_standard_function(c, e, expected);
+        if (is_function) return check_function(c, e, expected);
     }
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;

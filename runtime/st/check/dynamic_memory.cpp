@@ -79,7 +79,7 @@ Expression* element(Checking& c, const Expression& like, Variable& array, Expres
 Expression* instance(Checking& c, const Expression& like, Variable& array, Expression* index) {
     Expression* place = element(c, like, array, index);
     return array.type->element->kind == Kind::block
-               ? make_target(c, like, make_call(c, "ADR", place), nullptr)
+               ? make_target(c, like, make_call(c, "__SYSTEM.ADR", place), nullptr)
                : place;
 }
 
@@ -182,8 +182,8 @@ Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::
     Expression* is_taken =
         binary(c, like, Word::greater, element(c, like, *pool.taken, use_of(c, like, counter)),
                number(c, like, 0));
-    Expression* is_it =
-        binary(c, like, Word::equal, make_copy(c, *deletion.pointer), make_call(c, "ADR", place()));
+    Expression* is_it = binary(c, like, Word::equal, make_copy(c, *deletion.pointer),
+                               make_call(c, "__SYSTEM.ADR", place()));
     Block body = end_elements(c, like, pool, counter, inner);
     body.push_back(make_call_statement(c, system_call(c, like, "__SYSTEM.__DELETE", "first",
                                                       use_of(c, like, counter), *pool.taken)));
@@ -243,12 +243,13 @@ bool rewrite_new(Checking& c, Statement*& s) {
              &first = variable("__NEW.first", dint_type),
              &counter = variable("__NEW.counter", dint_type),
              &pointer = variable("__NEW.pointer", pointer_to(c, *type));
-    Expression* given = call.arguments.empty() ? number(c, like, 1)
-                                               : make_call(c, "TO_DINT", call.arguments[0].value);
+    Expression* given = call.arguments.empty()
+                            ? number(c, like, 1)
+                            : make_call(c, "__SYSTEM.TO_DINT", call.arguments[0].value);
     Block then = begin_elements(c, like, pool, first, counter, use_of(c, like, count), values);
     then.push_back(make_assignment(
         c, s->place, use_of(c, like, pointer),
-        make_call(c, "ADR", element(c, like, *pool.elements, use_of(c, like, first)))));
+        make_call(c, "__SYSTEM.ADR", element(c, like, *pool.elements, use_of(c, like, first)))));
     Expression* is_made =
         binary(c, like, Word::greater_or_equal, use_of(c, like, first), number(c, like, 0));
     Block otherwise, behind;

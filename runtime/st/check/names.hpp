@@ -47,9 +47,6 @@ Variable* find_member(const Type& type, std::string_view name);
 /// What a suggestion is chosen from.
 std::vector<std::string> names_of(const std::vector<Variable*>& variables);
 
-/// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
-/// list.
-bool refuse_of_list(Checking& c, const Expression& e);
 /// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
 /// function. L0904 where there is none.
 const Type* check_member(Checking& c, Expression*& e);

@@ -231,6 +231,23 @@ bool refuse_member_of_namespace(Checking& c, const Expression& member) {
     return true;
 }
 
+bool refuse_of_list(Checking& c, const Expression& e) {
+    const Expression& list = *e.operands[0];
+    if (list.kind != E::name || list.token.local || list.type || find_variable(c, list.token))
+        return false;
+    std::vector<std::string> names;
+    for (const DeclarationBlock& block : c.tree.globals)
+        if (!block.list.empty() && same_name(block.list, list.token.text))
+            for (const Declaration* declared : block.declarations)
+                if (declared->name.text != list_properties) names.emplace_back(declared->name.text);
+    if (names.empty() || c.find_routine(list.token) || c.look_up(&Names::types, list.token))
+        return false;
+    c.fail(code::not_declared, e.token.place,
+           fmt::format("the list '{}' has no '{}'", list.token.text, e.token.text),
+           suggest(e.token.text, names));
+    return true;
+}
+
 bool may_be_elsewhere(Checking& c, Place place) {
     const Prefixes* here = c.prefixes_at(place);
     if (!here || here->is_whole) return false;

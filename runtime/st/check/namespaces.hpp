@@ -30,6 +30,9 @@ std::optional<Token> without_project(Checking& c, Token name);
 void refuse_qualified(Checking& c, const Token& name);
 /// Of a member: the same, where what is before its last point is a namespace. False: it is none.
 bool refuse_member_of_namespace(Checking& c, const Expression& member);
+/// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
+/// list.
+bool refuse_of_list(Checking& c, const Expression& member);
 
 /// What stands there may be of a namespace that is unknown.
 bool may_be_elsewhere(Checking& c, Place place);

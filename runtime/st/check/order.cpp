@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -90,10 +91,9 @@ struct Rings {
         bool is_open = true;
         bool runs_rings = false;
     };
-    using Callees = std::vector<Routine*> (*)(const Checking&, const Routine&);
+    using Callees = std::function<std::vector<Routine*>(const Routine&)>;
 
-    const Checking& c;
-    Callees callees;
+    const Callees& callees;
     int Routine::*ring;
     std::unordered_map<Routine*, Visit> visits = {};
     std::vector<Routine*> open = {};
@@ -104,7 +104,7 @@ struct Rings {
         own.number = own.lowest = visits.size();
         open.push_back(&routine);
         bool is_ring = false;
-        for (Routine* called : callees(c, routine)) {
+        for (Routine* called : callees(routine)) {
             is_ring |= called == &routine;
             const auto it = visits.find(called);
             const Visit& other = it != visits.end() ? it->second : visit(*called);
@@ -128,13 +128,13 @@ struct Rings {
     }
 };
 
-void note_rings(const Checking& c, Rings::Callees callees, int Routine::*ring) {
-    Rings rings{c, callees, ring};
+void note_rings(const Checking& c, const Rings::Callees& callees, int Routine::*ring) {
+    Rings rings{callees, ring};
     for (Routine* routine : c.checked.order)
         if (!rings.visits.contains(routine)) rings.visit(*routine);
 }
 
-std::vector<Routine*> plain_callees(const Checking&, const Routine& routine) {
+std::vector<Routine*> plain_callees(const Routine& routine) {
     std::vector<Routine*> callees;
     for (const Called& called : routine.calls) callees.push_back(called.routine);
     return callees;
@@ -149,21 +149,34 @@ void note_plain_rings(Ordering& o) {
                 o.rounds.push_back({&called, hops_of({&called}), false});
 }
 
+/// The blocks that are each of these, by what they extend and implement.
+using Kinds = std::unordered_map<const Routine*, std::vector<Routine*>>;
+
+void add_kind(Kinds& kinds, Routine& block, const Routine& of) {
+    auto& blocks = kinds[&of];
+    if (!blocks.empty() && blocks.back() == &block) return;
+    blocks.push_back(&block);
+    if (of.base) add_kind(kinds, block, *of.base);
+    for (const Routine* interface : of.interfaces) add_kind(kinds, block, *interface);
+}
+
 /// What its calls may find.
-std::vector<Routine*> found_callees(const Checking& c, const Routine& routine) {
+std::vector<Routine*> found_callees(const Kinds& kinds, const Routine& routine) {
     std::vector<Routine*> callees;
-    for (const Routine* wanted : routine.finds)
-        for (const Routine* block : c.checked.order)
-            if (const Routine* found =
-                    block->has_instances() ? find_routine(*block, *wanted) : nullptr)
+    for (const Routine* wanted : routine.finds) {
+        const auto blocks = kinds.find(wanted->owner ? wanted->owner : wanted);
+        if (blocks == kinds.end()) continue;
+        for (const Routine* block : blocks->second)
+            if (const Routine* found = find_routine(*block, *wanted))
                 callees.push_back(const_cast<Routine*>(found));
+    }
     return callees;
 }
 
 /// An instance that is declared stands for what is called of it, one that is only referred to does
 /// not.
-std::vector<Routine*> all_callees(const Checking& c, const Routine& routine) {
-    std::vector<Routine*> callees = found_callees(c, routine);
+std::vector<Routine*> all_callees(const Kinds& kinds, const Routine& routine) {
+    std::vector<Routine*> callees = found_callees(kinds, routine);
     for (const Called& called : routine.calls)
         if (called.is_call || !called.through_reference) callees.push_back(called.routine);
     return callees;
@@ -171,15 +184,18 @@ std::vector<Routine*> all_callees(const Checking& c, const Routine& routine) {
 
 /// What instances find may lead back, too.
 void note_all_rings(Checking& c) {
+    Kinds kinds;
     for (Routine* routine : c.checked.order) {
         auto& finds = routine->finds;
         std::ranges::sort(finds);
         finds.erase(std::unique(finds.begin(), finds.end()), finds.end());
+        if (routine->has_instances()) add_kind(kinds, *routine, *routine);
     }
-    note_rings(c, all_callees, &Routine::ring);
+    note_rings(
+        c, [&](const Routine& routine) { return all_callees(kinds, routine); }, &Routine::ring);
     std::unordered_set<int> met;
     for (const Routine* routine : c.checked.order)
-        for (const Routine* found : found_callees(c, *routine))
+        for (const Routine* found : found_callees(kinds, *routine))
             if (routine->ring != 0 && found->ring == routine->ring) met.insert(routine->ring);
     for (Routine* routine : c.checked.order) routine->is_met = met.contains(routine->ring);
 }

@@ -10,7 +10,6 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/types.hpp"
-#include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -82,23 +81,6 @@ const Type* use_only_one(Checking& c, Expression*& e) {
 }
 
 }  // namespace
-
-bool refuse_of_list(Checking& c, const Expression& e) {
-    const Expression& list = *e.operands[0];
-    if (list.kind != E::name || list.token.local || list.type || find_variable(c, list.token))
-        return false;
-    std::vector<std::string> names;
-    for (const DeclarationBlock& block : c.tree.globals)
-        if (!block.list.empty() && same_name(block.list, list.token.text))
-            for (const Declaration* declared : block.declarations)
-                if (declared->name.text != list_properties) names.emplace_back(declared->name.text);
-    if (names.empty() || c.find_routine(list.token) || c.look_up(&Names::types, list.token))
-        return false;
-    c.fail(code::not_declared, e.token.place,
-           fmt::format("the list '{}' has no '{}'", list.token.text, e.token.text),
-           suggest(e.token.text, names));
-    return true;
-}
 
 const Type* check_member(Checking& c, Expression*& e) {
     name_block_of_list(c, *e);
