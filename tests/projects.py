@@ -746,6 +746,18 @@ def check_yaml_folder():
     assert "one/c.yaml:4:" in run("check", "one", code=2)
 
 
+def check_names_of_types():
+    """A type is in quotes where YAML needs them; blocks of two types have two names."""
+    for at, name in enumerate(("Main [OB1]", "Main: x", "Main, 2", "Main #1", "{x}", "it's", "Größe")):
+        write(f"names{at}.scl", f'ORGANIZATION_BLOCK "{name}"\nVERSION : 0.1\nVAR_TEMP a : Int; END_VAR\nBEGIN\n #a := 1;\nEND_ORGANIZATION_BLOCK\n')
+        run("new", f"names{at}", "--from", f"names{at}.scl")
+        run("run", "--quiet", f"names{at}.yaml")
+    write("alike.st", "".join(f"FUNCTION_BLOCK {name}\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n"
+                              for name in ("Abc_X", "AbcX", "RF_TRIG", "rf__trig", "rfTrig")))
+    run("new", "alike", "--from", "alike.st")
+    run("run", "--quiet", "alike.yaml")
+
+
 def check_dialects():
     """What a file in .st says by its text, by the option, and by the program that is written around it."""
     source = "PROGRAM Main\nVAR a : ARRAY[3..REAL_TO_INT(2.5)] OF INT; END_VAR\nEND_PROGRAM\n"
@@ -1588,6 +1600,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_editors_of_matiec()
     check_prefix()
     check_yaml_folder()
+    check_names_of_types()
     check_dialects()
     check_neighbours()
     check_nothing()

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/units.hpp"
+#include "runtime/source/yaml_text.hpp"
 
 namespace lineshaft {
 
@@ -23,27 +24,9 @@ std::string time_text(std::int64_t time) {
 constexpr std::string_view first_key = "lineshaft_recording:", no_entry = "entries:\n",
                            the_end = "end: true}\n";
 
-std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
-    return out + "'";
-}
-
-/// A name in braces or brackets, in quotes where it is not letters alone or a word of YAML's.
-std::string name_text(const std::string& name) {
-    constexpr std::string_view letters =
-        "_.0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
-    const bool is_plain = name.find_first_not_of(letters) == std::string::npos &&
-                          name.find_first_of(letters.substr(12)) != std::string::npos;
-    static constexpr std::string_view words[] = {"null", "true", "false", "nan", "inf"};
-    const bool is_word =
-        std::ranges::any_of(words, [&](std::string_view word) { return same_letters(name, word); });
-    return is_plain && !is_word ? name : quoted(name);
-}
-
 std::string value_text(const Change& change) {
     const Type type = change.kind == Change::Kind::set ? change.stimulus.type : change.force.type;
-    return type == Type::enumeration ? name_text(change.text) : change.text;
+    return type == Type::enumeration ? yaml_name(change.text) : change.text;
 }
 
 }  // namespace
@@ -56,7 +39,7 @@ std::string recorded(std::int64_t time, std::span<const Change> changes) {
     std::string list;
     for (const Change& change : changes) {
         if (!list.empty()) list += ", ";
-        list += name_text(change.name);
+        list += yaml_name(change.name);
         if (!lifts) list += ": " + value_text(change);
     }
     return fmt::format("- {{at: {}, {}: {}}}\n", time_text(time), key,
@@ -69,8 +52,8 @@ RecordingWriter::RecordingWriter(World& world, std::string path, const std::stri
     open(goes_on);
     if (!error_.empty()) return;
     if (!goes_on)
-        begin(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\n{}", quoted(program),
-                          meaning, no_entry));
+        begin(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\n{}",
+                          yaml_quoted(program), meaning, no_entry));
     if (!error_.empty()) return;
     try {
         thread_ = world_.start([this] { work(); });

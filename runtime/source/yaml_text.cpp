@@ -183,4 +183,21 @@ std::size_t after_dash(const YamlText& source, std::size_t next) {
     return next;
 }
 
+std::string yaml_quoted(std::string_view text) {
+    std::string out = "'";
+    for (const char c : text) out.append(c == '\'' ? 2 : 1, c);
+    return out + "'";
+}
+
+std::string yaml_name(std::string_view name) {
+    constexpr std::string_view letters =
+        "_.0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    const bool is_plain = name.find_first_not_of(letters) == name.npos &&
+                          name.find_first_of(letters.substr(12)) != name.npos;
+    static constexpr std::string_view words[] = {"null", "true", "false", "nan", "inf"};
+    const bool is_word =
+        std::ranges::any_of(words, [&](std::string_view word) { return lower(name) == word; });
+    return is_plain && !is_word ? std::string(name) : yaml_quoted(name);
+}
+
 }  // namespace lineshaft

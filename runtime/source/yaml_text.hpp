@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -63,5 +64,12 @@ std::size_t after_colon(const YamlText& source, std::size_t key_end);
 
 /// Where the item of the last `-` before `next` would begin: between are blanks and comments only.
 std::size_t after_dash(const YamlText& source, std::size_t next);
+
+/// How a text is written: `'it''s'`.
+std::string yaml_quoted(std::string_view text);
+
+/// How a name is written within braces or brackets: in quotes where it is not letters alone, or a
+/// word of YAML's.
+std::string yaml_name(std::string_view name);
 
 }  // namespace lineshaft

@@ -14,6 +14,7 @@
 #include "runtime/debug/adapter.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/yaml_text.hpp"
 #include "tools/lineshaft/run_command.hpp"
 #include "tools/lineshaft/test_files.hpp"
 
@@ -155,7 +156,7 @@ std::optional<Loaded> load_test(const DebugOptions& options, Diagnostics& out) {
         "lineshaft: 1\ntasks: {test: {every: 1 ms}}\nrun: {for: 0.5 ms}\nblocks:\n"
         "  TEST: {type: TEST, task: test}\n";
     for (const auto& [name, kind] : test->suite.objects())
-        text += fmt::format("  {}: {{type: {}, task: test}}\n", name, kind);
+        text += fmt::format("  {}: {{type: {}, task: test}}\n", name, yaml_name(kind));
     const auto program = std::make_shared<SourceFile>(SourceFile{"TEST.yaml", text});
     Loaded loaded{.program = read_program(program, {}, out), .linked = {}};
     loaded.program.file = test->file;

@@ -12,6 +12,7 @@
 #include "runtime/program/whole_project.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/yaml_text.hpp"
 #include "runtime/st/library/used_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 #include "tools/lineshaft/new_tasks.hpp"
@@ -29,6 +30,12 @@ struct NewBlock {
     bool called = false;                                          ///< by the sources of others
     std::string note = {};                                        ///< what is otherwise than there
 };
+
+/// The name, longer where a block has it.
+std::string apart_from(const std::vector<NewBlock>& blocks, std::string name) {
+    while (std::ranges::count(blocks, name, &NewBlock::name) > 0) name += '_';
+    return name;
+}
 
 std::string time_text(std::int64_t ns) {
     if (ns % 1'000'000 == 0) return fmt::format("{} ms", ns / 1'000'000);
@@ -71,9 +78,8 @@ std::vector<NewBlock> programs_of(const st::Library& library, const std::vector<
         std::string name;
         for (const char c : given) name += is_letter(c) || is_digit(c) ? c : '_';
         if (is_digit(name.front())) name.insert(0, "_");
-        for (const NewBlock& other : blocks)
-            if (other.name == name) name += "_" + task;
-        blocks.push_back({name, std::string(kind.name), task});
+        if (std::ranges::count(blocks, name, &NewBlock::name) > 0) name += "_" + task;
+        blocks.push_back({apart_from(blocks, name), std::string(kind.name), task});
     };
     for (const NewTask& task : tasks)
         for (const projects::TaskProgram& program : task.programs) {
@@ -119,7 +125,7 @@ std::vector<NewBlock> instances_of(const st::Library& library, const std::string
             name += begins ? "_" : "";
             name += is_letter(c) || is_digit(c) ? lower(c) : '_';
         }
-        blocks.push_back({name, std::string(kind.name), task});
+        blocks.push_back({apart_from(blocks, name), std::string(kind.name), task});
     }
     return blocks;
 }
@@ -313,7 +319,8 @@ std::string text_of(const projects::Project& project, const std::vector<NewTask>
         if (!is_taken(task)) text += remark_on_event(task);
     text += "blocks:\n";
     for (const NewBlock& block : blocks) {
-        text += fmt::format("  {}: {{type: {}, task: {}", block.name, block.type, block.task);
+        text += fmt::format("  {}: {{type: {}, task: {}", block.name, yaml_name(block.type),
+                            block.task);
         if (block.called) text += ", called: true";
         for (const auto& [path, value] : block.given) {
             const std::string_view mark = path.find('[') == path.npos ? "" : "\"";

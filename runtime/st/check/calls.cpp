@@ -167,7 +167,7 @@ void give_open_arrays(Checking& c, Expression*& e, const Routine& routine) {
 /// `EN := TRUE` of a call within an expression says nothing.
 void leave_out_enable(Checking& c, Expression*& e, const Routine& routine) {
     const auto is_enable = [&](Argument& a) {
-        return same_name(a.name.text, "en") && !routine.names.contains("en") && check(c, a.value) &&
+        return same_name(a.name.text, "en") && !declares(routine, "en") && check(c, a.value) &&
                a.value->kind == E::constant && a.value->type->kind == Kind::boolean &&
                a.value->constant.integer == 1;
     };

@@ -1,4 +1,5 @@
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/nodes.hpp"
 
 namespace lineshaft::st {
 
@@ -48,18 +49,24 @@ bool mixes_signs_of_64(const Expression& e) {
            (a.is_unsigned_64() || b.is_unsigned_64());
 }
 
-/// The type that holds a constant which `typed` does not, and all of that: what is expected, or a
-/// signed one. Null if there is none, or none is needed.
+/// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
+/// what is expected, or a signed one. Null if there is none, or none is needed.
 const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected) {
     const Wide value = constant.constant.integer;
     const bool is_more_bits =
         constant.type->kind == Kind::any_bits && value >= Wide{1} << typed.plain().bits;
     const bool is_whole = constant.type->kind == Kind::any_integer || is_more_bits;
-    if (!is_whole || typed.kind != Kind::integer) return nullptr;
+    const bool is_bits = typed.kind == Kind::bits;
+    if (!is_whole || (typed.kind != Kind::integer && !is_bits)) return nullptr;
     const auto holds = [&](const Type& type) {
         return value >= smallest(type) && value <= largest(type);
     };
     if (holds(typed.plain())) return nullptr;
+    if (is_bits) {
+        for (const int bits : {16, 32, 64})
+            if (holds(bits_type(bits))) return &bits_type(bits);
+        return nullptr;
+    }
     const Type* const due = expected && expected->is_integer() ? &expected->plain() : &dint_type;
     for (const Type* wider : {due, &dint_type, &lint_type})
         if (holds(*wider) && widens(typed, *wider)) return wider;

@@ -131,6 +131,26 @@ void check_special(Checking& c, Statement*& s) {
     s = make_sequence(c, s->place, std::move(assignments));
 }
 
+/// The routine of that name, or that of an instance.
+Routine* named_routine(Checking& c, const Token& name) {
+    const Variable* variable = find_variable(c, name);
+    if (!variable) return c.find_routine(name);
+    return variable->type ? variable->type->routine : nullptr;
+}
+
+/// The method that is called, or the routine of the instance: `s.motor`, `motors[i]`, `p^`, a
+/// reference.
+Routine* reached_routine(Checking& c, Expression*& callee) {
+    if (callee->kind == E::member) {
+        const Type* of = check(c, callee->operands[0]);
+        if (!of) return nullptr;
+        if (of->routine)
+            if (Routine* method = find_in(of->routine->methods, callee->token.text)) return method;
+    }
+    const Type* type = check(c, callee);
+    return type ? type->routine : nullptr;
+}
+
 }  // namespace
 
 bool rewrite(Checking& c, Statement*& s) {
@@ -138,19 +158,20 @@ bool rewrite(Checking& c, Statement*& s) {
     if (rewrite_new(c, s) || rewrite_delete(c, s) || rewrite_init(c, s)) return true;
     Expression& call = *s->value;
     const Expression& callee = *call.operands[0];
-    const Routine* routine = nullptr;
+    Routine* routine = callee.kind == E::name ? named_routine(c, callee.token) : nullptr;
+    const bool is_reached = callee.kind != E::name || find_variable(c, callee.token);
+    if (!routine && is_reached && (find_argument(call, "en") || find_argument(call, "eno")))
+        routine = reached_routine(c, call.operands[0]);
     const StandardFunction* special = nullptr;
     if (callee.kind == E::name) {
-        const Variable* variable = find_variable(c, callee.token);
-        routine = c.find_routine(callee.token);
-        if (variable && variable->type) routine = variable->type->routine;
         const StandardFunction* standard = find_standard_function(callee.token.text);
-        const bool is_known = variable || routine || callee.token.quoted || callee.token.local;
+        const bool is_known =
+            find_variable(c, callee.token) || routine || callee.token.quoted || callee.token.local;
         if (s->kind == S::call && standard && !is_known && standard->typing == Typing::statement)
             special = standard;
     }
     const auto is_switched = [&](std::string_view name) {
-        return find_argument(call, name) && !(routine && routine->names.contains(name));
+        return find_argument(call, name) && !(routine && declares(*routine, name));
     };
     const bool standard_eno = is_switched("eno") && !routine;
     if (special && !is_switched("en") && !standard_eno) {

@@ -136,6 +136,10 @@ std::vector<Variable*> all_variables(const Routine& block) {
     return all;
 }
 
+bool declares(const Routine& block, std::string_view name) {
+    return std::ranges::any_of(all_variables(block), is_called(name), &Variable::text);
+}
+
 std::string signature_of(const Pou& routine) {
     std::string signature;
     for (const Section section : {Section::input, Section::in_out, Section::output})

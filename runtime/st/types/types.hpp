@@ -293,6 +293,9 @@ struct Routine {
 
 /// Of a block: its variables, those of its bases first.
 std::vector<Variable*> all_variables(const Routine& block);
+
+/// Whether it, or one of its bases, has a variable of that name.
+bool declares(const Routine& block, std::string_view name);
 /// What the arguments are written as: `int,real`. Those of one name differ in it.
 std::string signature_of(const Pou& routine);
 /// The method of the block that is called as `like`, one of another block, is; null: it has none.
