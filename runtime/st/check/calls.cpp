@@ -14,6 +14,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/check/variants.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -420,6 +421,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                                  (find_standard_function(name) || !find_variable(c, callee.token));
         if (is_function && find_test_statement(name) != TestCall::none)
             return check_test_statement(c, *e, as_statement);
+        if (is_function)
+            if (const auto given = check_variant_call(c, e)) return *given;
         if (is_function)
             if (const auto given = check_reference_call(c, e, expected)) return *given;
         if (is_function)
