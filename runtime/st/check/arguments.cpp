@@ -5,6 +5,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/check/variants.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -87,6 +88,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
 void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     Expression*& value = argument.value;
     const Type* type = parameter.type;
+    if (type && is_variant(*type)) argument.is_output = false;
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
     const bool is_output = parameter.section == Section::output;
@@ -104,6 +106,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         return;
     }
     if (parameter.section == Section::input || is_set) {
+        if (type && is_variant(*type)) return become_variant(c, value, *type);
         if (type && is_any_input(*type)) return become_any(c, value, *type);
         if (check(c, value, type) && type) coerce(c, value, *type);
         return;

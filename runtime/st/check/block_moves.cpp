@@ -34,6 +34,11 @@ std::optional<Bounds> bounds_of_array(Checking& c, Expression* array) {
     return Bounds{bound("LOWER_BOUND"), bound("UPPER_BOUND")};
 }
 
+Expression* argument_of(const Expression& call, std::string_view name) {
+    const Argument* found = find_called(call.arguments, name, &Argument::name);
+    return found ? found->value : nullptr;
+}
+
 Expression* elements_from(Checking& c, const Expression& element) {
     if (element.kind != E::index || element.arguments.size() != 1) return nullptr;
     Expression* index = element.arguments[0].value;

@@ -14,6 +14,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/check/variants.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -359,6 +360,7 @@ static void name_instance_of_block(Checking& c, Expression*& e) {
 
 /// Of the standard.
 static const Type* check_function(Checking& c, Expression*& e, const Type* expected) {
+    if (const auto given = check_variant_call(c, e)) return *given;
     if (const auto given = check_reference_call(c, e, expected)) return *given;
     if (const auto given = check_place_call(c, e)) return *given;
     return check_standard_function(c, e, expected);

@@ -15,6 +15,7 @@
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/check/variants.hpp"
 
 namespace lineshaft::st {
 
@@ -204,7 +205,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const Type* type = !declared->type ? nullptr
                            : is_given      ? resolve_parameter(c, *declared->type)
                                            : resolve(c, *declared->type);
-        const bool is_value = takes_values(block, type);
+        const bool is_pointed_at = is_given && type && is_variant(*type);
+        const bool is_value = takes_values(block, type) || is_pointed_at;
         const Section section = is_value ? Section::input : block.section;
         const bool constant = block.constant && !is_value;
         const Place place = declared->name.place;

@@ -183,7 +183,6 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
         each.value = make_use(c, call, kept);
     }
     const std::string name = upper(callee.token.text);
-    if (name == "MOVE_BLK_VARIANT") return moves_variant(c, *make_with(c, call, given), before);
     if (name == "SCATTER_BLK" || name == "GATHER_BLK")
         return has_bit_block(c, *make_with(c, call, given));
     if (name.ends_with("_BLK")) {

@@ -151,7 +151,8 @@ Expression* make_call(Checking& c, const Expression& like, Expression* callee,
 }
 
 Expression* make_call(Checking& c, std::string_view function, Expression* argument) {
-    return make_call(c, *argument, make_name(c, *argument, function), {{.value = argument}});
+    return make_call(c, *argument, make_function_name(c, *argument, function),
+                     {{.value = argument}});
 }
 
 Expression* make_with(Checking& c, const Expression& call, std::vector<Argument> arguments) {

@@ -4,6 +4,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/variants.hpp"
 
 namespace lineshaft::st {
 
@@ -263,6 +264,7 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
 
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
+    if (is_comparison(e->op)) take_type_names(c, *e);
     const Type* wanted = is_comparison(e->op) || is_logic(e->op) ? nullptr : expected;
     const bool name_first = left->kind == E::name && is_comparison(e->op);
     if (name_first && (left->token.quoted || !find_variable(c, left->token))) {
@@ -273,6 +275,7 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     check(c, left, wanted);
     check(c, right, is_comparison(e->op) ? left->type : wanted);
     if (!left->type || !right->type) return nullptr;
+    if (is_comparison(e->op)) take_null_variant(c, *e);
     if (e->op == Word::equal || e->op == Word::unequal) take_addresses(c, *e);
     if (left->type->is_reference() || right->type->is_reference())
         return check_reference_operator(c, e, expected);

@@ -181,9 +181,6 @@ bool rewrite(Checking& c, Statement*& s) {
     }
     if (!is_switched("en") && !standard_eno) {
         const bool is_siemens = s->place.dialect().vendor == Vendor::siemens;
-        if (is_siemens && !routine && callee.kind == E::name &&
-            same_name(callee.token.text, "MOVE_BLK_VARIANT"))
-            return rewrite_variant_move(c, s), true;
         return is_siemens && routine && rewrite_bytes(c, s, *routine);
     }
     s = if_enabled(c, *s, routine != nullptr);

@@ -15,6 +15,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/s5.hpp"
+#include "runtime/st/check/variants.hpp"
 #include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::st {
@@ -225,6 +226,7 @@ const Type* select_by_numbers(Checking& c, Statement& s, const Type& type) {
 }
 
 void check_case(Checking& c, Statement*& slot) {
+    take_type_names(c, *slot);
     const Type* type = check(c, slot->value);
     if (type && type->kind == Kind::text && slot->value->place.dialect().selects_by_texts)
         return rewrite_case_of_texts(c, slot);

@@ -56,20 +56,12 @@ Expression* elements_from(Checking& c, const Expression& element);
 Expression* stays_within(Checking& c, const Expression& like, std::string_view function,
                          Expression* in, Expression* count, Expression* out);
 
+/// What is given by that name; null: nothing.
+Expression* argument_of(const Expression& call, std::string_view name);
 /// MOVE_BLK, UMOVE_BLK, FILL_BLK and UFILL_BLK of Siemens as what they do with the elements of two
 /// arrays, or to fill with the members of a structure. Where there are fewer elements than that
 /// they do nothing. Its arguments are in their order.
 void rewrite_block_move(Checking& c, Statement*& s);
-
-// variant_moves.cpp
-
-/// What is given by that name; null: nothing.
-Expression* argument_of(const Expression& call, std::string_view name);
-/// MOVE_BLK_VARIANT as MOVE_BLK between elements of two arrays, where these have so many; what it
-/// gives is 0 or says why nothing is moved.
-void rewrite_variant_move(Checking& c, Statement*& s);
-/// Whether it moves anything, behind what is added to `before`; null: something is wrong with it.
-Expression* moves_variant(Checking& c, const Expression& call, Block& before);
 
 // bit_blocks.cpp
 

@@ -53,7 +53,7 @@ struct CodeRoutine {
     std::uint32_t levels = 0;  ///< that an instance which runs it has room for
     std::uint32_t mark = 0;    ///< slot that says that it runs; 0: it has none
     std::vector<ConstantSlot> constants = {};  ///< by their slots
-    /// In a ring: what a call of it changes of another one on the same instance.
+    /// What its call changes of another on its instance: nothing, from its results on, if no ring.
     SlotRange variables = {}, temporaries = {};
     bool holds_instance = false;  ///< of a call, which is not put aside
     SlotRange pile = {};          ///< where the frames of calls that recur are

@@ -13,7 +13,7 @@ struct Instead {
 
 constexpr Instead types_of_vendors[] = {
     {" s5time ", "write TIME"},
-    {" any variant ", "write the type; a block for each"},
+    {" any ", "write VARIANT, or the type; a block for each"},
     {" pointer ", "pass the variable as VAR_IN_OUT"},
     {" pid_compact ", "write the controller as a FUNCTION_BLOCK"},
     {" program_alarm ", "write a BOOL output, and expect it"},
@@ -24,7 +24,6 @@ constexpr Instead types_of_vendors[] = {
 constexpr Instead functions_of_vendors[] = {
     {" sizeof ", "declare the size as a constant"},
     {" adr ref ", "pass the variable as VAR_IN_OUT"},
-    {" typeof is_array ", "write a block for each type"},
     {" wr_sys_t ", "leave it out: the clock is that of the run, which begins 1970-01-01"},
     {" int_to_bcd ", "write INT_TO_BCD16(x)"},
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
