@@ -30,9 +30,8 @@ void begin(Writing& w, Routine& routine) {
                                .depth = routine.depth,
                                .levels = block->levels,
                                .mark = routine.mark});
-    if (routine.ring != 0)
-        w.code.routines.back().variables = {routine.owner ? routine.first : routine.temps_begin,
-                                            routine.variables_end};
+    const std::uint32_t first = routine.owner ? routine.first : routine.temps_begin;
+    w.code.routines.back().variables = {first, routine.ring != 0 ? routine.variables_end : first};
     w.code.routines.back().holds_instance = routine.holds_instance;
     w.place = routine.pou->place;
     if (routine.mark != 0) w.put(Op::move, routine.mark, w.constant_slot(1));
