@@ -181,6 +181,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
 
 /// What was lent, and outputs.
 void take(Writing& w, const Location& frame, const Expression& e, const std::vector<Lent>& lent) {
+    const Type* callee = e.operands[0] ? e.operands[0]->type : nullptr;
     for (const Lent& one : lent) write(w, one.at, one.copy, *one.type);
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
@@ -190,7 +191,8 @@ void take(Writing& w, const Location& frame, const Expression& e, const std::vec
             e.is_dispatched ? parameter(w, frame, e, variable) : part(w, frame, variable);
         const Type &given = *variable.type, &wanted = *argument.value->type;
         const auto taken = [&] {
-            const Slot slot = load(w, from);
+            Slot slot = load(w, from);
+            if (is_finer_than_ms(callee, given, e.place)) slot = whole_ms(w, slot, e.place);
             return argument.is_negated ? w.emit(Op::not_bool, none, slot)
                                        : convert(w, slot, given, wanted, false, none);
         };
