@@ -178,6 +178,14 @@ bool is_of_program(const Checking& c, const Variable& variable) {
 
 }  // namespace
 
+bool take_open_address(Variable& variable, const Token& at) {
+    if (!at.text.ends_with('*')) return false;
+    const char area = at.text.size() > 2 ? upper(at.text[1]) : ' ';
+    if (area == 'I') variable.pin = Section::input;
+    if (area == 'Q') variable.pin = Section::output;
+    return true;
+}
+
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared) {
     const Token& at = declared.at;
     if (at.word != Word::direct || !variable.type) return;
@@ -186,12 +194,7 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
         if (!locate_s5(c, variable, at)) variable.type = nullptr;
         return;
     }
-    if (at.text.ends_with('*')) {
-        const char area = at.text.size() > 2 ? upper(at.text[1]) : ' ';
-        if (area == 'I') variable.pin = Section::input;
-        if (area == 'Q') variable.pin = Section::output;
-        return;
-    }
+    if (take_open_address(variable, at)) return;
     auto address = address_of(c, at);
     const bool begins_byte = address && address->bits == 1 && address->bit == 0;
     if (begins_byte && !variable.type->is_scalar() && at.place.dialect().packs_as_s7)

@@ -7,6 +7,9 @@ namespace lineshaft::st {
 /// `x AT %QW4 : INT`: the variable is a view of the process image. One at `%I*` is none.
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared);
 
+/// `AT %I*`, `AT %Q*`: an input or an output for programs. False: another address.
+bool take_open_address(Variable& variable, const Token& at);
+
 /// `%QW4` in an expression.
 const Type* check_direct(Checking& c, Expression& e);
 

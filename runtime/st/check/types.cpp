@@ -100,10 +100,10 @@ std::uint8_t pack_of(const TypeText& text) {
 }
 
 /// `lo AT %B0 : BYTE`, `on AT %X3.0 : BOOL` of a STRUCT OVERLAP; in another one members have bytes
-/// of their own.
+/// of their own. `sensor AT %I* : BOOL` is an input of each variable of the structure.
 void place_member(Checking& c, const Declaration& declared, bool overlaps, Variable& member) {
     const Token& at = declared.at;
-    if (at.word != Word::direct) return;
+    if (at.word != Word::direct || take_open_address(member, at)) return;
     const auto place = read_address("%M" + std::string(at.text.substr(1)), AddressCount::bytes);
     if (!place)
         return void(c.fail(code::not_declared, at.place,
