@@ -1249,8 +1249,15 @@ class SourceMaker {
         return "(" + text + ")";
     }
 
+    /// Of the block at hand, which may be one that others replace.
+    void call_own_method() {
+        const Callable& callable = choices_.one_of(class_->methods).call;
+        call_bounded([&] { call(callable, "THIS^." + callable.name); });
+    }
+
     /// Calls an instance, a method or a function as a statement; its result goes somewhere or not.
     void call_something() {
+        if (class_ && !class_->methods.empty() && below(2) == 1) return call_own_method();
         std::vector<const Callable*> fitting;
         for (const Callable& callable : callables_)
             if (can_be_called(callable)) fitting.push_back(&callable);
@@ -1942,6 +1949,7 @@ class SourceMaker {
         Type& type = add_type(Kind::block, "Unit");
         Class& made = classes_.emplace_back();
         made.type = &type;
+        class_ = &made;
         if (base) {
             take_over(made, type, *base);
             made.call = base->call;
@@ -2003,6 +2011,7 @@ class SourceMaker {
         section("VAR_TEMP", counters_, false);
         out_ += body + methods;
         line("END_FUNCTION_BLOCK");
+        class_ = nullptr;
         blocks_.push_back(&made);
         callables_.push_back(made.call);
         if (!type.is_abstract) own_.push_back(&type);
@@ -2221,7 +2230,8 @@ class SourceMaker {
     int names_ = 0, indent_ = 0, nesting_ = 0, loops_ = 0, index_depth_ = 0, reads_ = 0;
     bool has_eno_ = false;
     Pointers pointers_;
-    std::size_t subject_ = 0;  ///< 1: UNION, pointers, addresses; 2: classes; 3: both
+    const Class* class_ = nullptr;  ///< that is being written
+    std::size_t subject_ = 0;       ///< 1: UNION, pointers, addresses; 2: classes; 3: both
     std::deque<Type> types_;
     std::vector<const Type*> scalars_, texts_, aggregates_, standard_, own_;
     std::vector<std::pair<const Type*, const Type*>> flags_;  ///< and bit strings of as many bits

@@ -44,6 +44,12 @@ bool is_kept_as(const Type& given, const Type& number) {
            !given.is_strict && same_type(given.base->plain(), number);
 }
 
+/// An instance of another block that extends that of the parameter.
+bool is_derived(const Type& given, const Type& type) {
+    return given.kind == Kind::block && type.kind == Kind::block &&
+           is_a(*given.routine, *type.routine);
+}
+
 /// A variable of type `given` stands for an output or a VAR_IN_OUT.
 void check_given(Checking& c, const Argument& argument, const Variable& parameter,
                  const Type& given) {
@@ -55,8 +61,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                                        describe(given)),
                            "take the output as it is"));
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
-    const bool derives = parameter.section == Section::in_out && given.kind == Kind::block &&
-                         type->kind == Kind::block && is_a(*given.routine, *type->routine);
+    const bool derives = parameter.section == Section::in_out && is_derived(given, *type);
     const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
                           type->is_integer() && given.is_integer();  // of a date: any integer
     const bool is_number =
@@ -108,7 +113,8 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     if (parameter.section == Section::input || is_set) {
         if (type && is_variant(*type)) return become_variant(c, value, *type);
         if (type && is_any_input(*type)) return become_any(c, value, *type);
-        if (check(c, value, type) && type) coerce(c, value, *type);
+        const Type* given = check(c, value, type);
+        if (given && type && !is_derived(*given, *type)) coerce(c, value, *type);
         return;
     }
     const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);

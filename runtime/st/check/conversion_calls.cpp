@@ -81,19 +81,21 @@ bool check_operand(Checking& c, Expression*& value, const Type* source) {
     return true;
 }
 
-/// Between dates and times only some.
-bool is_time_conversion(const Type& from, const Type& to) {
-    return (from.kind == Kind::moment && to.is_date()) ||
+/// Between dates and times only some; in CODESYS also of a TIME since 1970.
+bool is_time_conversion(const Type& from, const Type& to, const Dialect& dialect) {
+    const bool counts_from_1970 = dialect.times_count_ms && dialect.vendor != Vendor::siemens;
+    return (counts_from_1970 && (from.kind == Kind::time || to.kind == Kind::time)) ||
+           (from.kind == Kind::moment && to.is_date()) ||
            (from.kind == Kind::date && to.kind == Kind::moment) ||
            (from.kind == Kind::clock && to.kind == Kind::time) ||
            (from.kind == Kind::time && to.kind == Kind::clock) || same_type(from, to);
 }
 
-bool is_conversion(const Type& from, const Type& to) {
+bool is_conversion(const Type& from, const Type& to, const Dialect& dialect) {
     if (from.kind == Kind::text)
         return to.kind == Kind::text || (to.is_scalar() && to.kind != Kind::enumeration);
     if (!from.is_scalar()) return false;
-    if (from.is_time() && to.is_time()) return is_time_conversion(from, to);
+    if (from.is_time() && to.is_time()) return is_time_conversion(from, to, dialect);
     return to.is_scalar() || to.kind == Kind::text;
 }
 
@@ -142,12 +144,12 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
         return is_constant(*e) ? become(c, e, *target, {.text = e->constant.text})
                                : become_converted(c, e, *target);
     }
-    if (!is_conversion(from, *target))
+    const Dialect& dialect = value->place.dialect();
+    if (!is_conversion(from, *target, dialect))
         return c.fail(
             code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
     const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
-    const Dialect& dialect = value->place.dialect();
     const bool is_kept = (dialect.reckons_in > from.bits && from.is_integer()) ||
                          (dialect.times_count_ms && from.counts_ns != target->counts_ns);
     if (are_texts ||

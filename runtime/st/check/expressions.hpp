@@ -45,6 +45,8 @@ Nothing refuse_operands(Checking& c, const Expression& e, std::string help);
 void become_moments(Checking& c, Expression& e);
 /// TIME + TIME, TIME * number, TIME / number.
 const Type* check_time_arithmetic(Checking& c, Expression*& e);
+/// TIME(), LTIME(), TASK_CYCLE() and their like.
+const Type* check_scan_time(Checking& c, Expression*& e);
 
 /// DTL + TIME, TIME + DTL, DTL - TIME, and DTL - DTL, a TIME.
 const Type* check_dtl_arithmetic(Checking& c, Expression*& e);

@@ -83,10 +83,11 @@ std::optional<Token> name_in_own_list(Checking& c, const Token& token) {
     return full;
 }
 
-/// Nothing runs, or the PROPERTY of a list of globals does.
+/// Nothing runs, or what begins globals, or the PROPERTY of a list of them.
 bool is_within_list(const Checking& c) {
     const Routine* r = c.routine;
-    return !r || (r->owner && r->owner->name.starts_with(list_properties));
+    return !r || r == c.begin_of_globals ||
+           (r->owner && r->owner->name.starts_with(list_properties));
 }
 
 Variable* find_global(Checking& c, const Token& token) {

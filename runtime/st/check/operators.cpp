@@ -5,20 +5,34 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/variants.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-/// `w AND NOT 16#FF`: the mask is as wide as what it is for.
+/// CODESYS: `SHL(1, i)`
+bool is_shifted_number(const Expression& e) {
+    if (e.kind != E::call || e.operands[0]->kind != E::name || e.arguments.empty()) return false;
+    const StandardFunction* function = find_standard_function(e.operands[0]->token.text);
+    const Expression* given = e.arguments.front().value;
+    return function && function->typing == Typing::places && given && given->kind == E::constant &&
+           e.place.dialect().is_loose;
+}
+
+/// `w AND NOT 16#FF`, `w OR SHL(1, i)`: the mask is as wide as what it is for.
 void check_masks(Checking& c, Expression& e, const Type* expected) {
     const auto is_mask = [](const Expression& o) {
-        return o.kind == E::unary && o.op == Word::not_ && o.operands[0]->kind == E::constant;
+        return (o.kind == E::unary && o.op == Word::not_ && o.operands[0]->kind == E::constant) ||
+               is_shifted_number(o);
     };
     for (const int i : {0, 1}) {
         if (!is_mask(*e.operands[i]) || is_mask(*e.operands[1 - i])) continue;
         const Type* other = check(c, e.operands[1 - i]);
-        check(c, e.operands[i], other && other->kind == Kind::bits ? other : expected);
+        const bool has_width =
+            other && (other->kind == Kind::bits ||
+                      (other->kind == Kind::integer && e.operands[i]->kind == E::call));
+        check(c, e.operands[i], has_width ? other : expected);
     }
 }
 

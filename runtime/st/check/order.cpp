@@ -173,12 +173,21 @@ std::vector<Routine*> found_callees(const Kinds& kinds, const Routine& routine) 
     return callees;
 }
 
-/// An instance that is declared stands for what is called of it, one that is only referred to does
-/// not.
+/// It is laid out behind what its block extends, which it need not call.
+bool is_of_base(const Routine& routine, const Called& called) {
+    const Routine& block = routine.owner ? *routine.owner : routine;
+    const Routine& other = called.routine->owner ? *called.routine->owner : *called.routine;
+    return !called.is_call && called.place.source == block.pou->name.place.source &&
+           called.place.begin == block.pou->name.place.begin && is_a(block, other);
+}
+
+/// An instance that is declared stands for what is called of it; one that is only referred to does
+/// not, nor does what a block extends.
 std::vector<Routine*> all_callees(const Kinds& kinds, const Routine& routine) {
     std::vector<Routine*> callees = found_callees(kinds, routine);
     for (const Called& called : routine.calls)
-        if (called.is_call || !called.through_reference) callees.push_back(called.routine);
+        if (called.is_call || !(called.through_reference || is_of_base(routine, called)))
+            callees.push_back(called.routine);
     return callees;
 }
 

@@ -484,10 +484,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::lower_bound:
         case Typing::upper_bound: return check_bound(c, e, expected);
         case Typing::element_count: return check_element_count(c, e);
-        case Typing::scan_time:
-            return call.standard->result == Generic::long_integer     ? &lint_type
-                   : call.standard->result == Generic::double_integer ? &dint_type
-                                                                      : &time_type;
+        case Typing::scan_time: return check_scan_time(c, e);
         case Typing::wanted: return check_wanted(c, e, expected);
         case Typing::memory: return check_memory(c, call, expected);
         case Typing::operation: return check_operation(c, e, expected);

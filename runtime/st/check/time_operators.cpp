@@ -1,6 +1,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
@@ -82,6 +83,18 @@ const Type* check_time_arithmetic(Checking& c, Expression*& e) {
         if (!is_long && !coerce(c, number, to)) return nullptr;
     }
     return become_time(c, e, left->type->counts_ns || right->type->counts_ns);
+}
+
+/// The clock is in ns, which a TIME of whole ms is cut from, and an LTIME beside one has; the
+/// interval of a task is what it is.
+const Type* check_scan_time(Checking& c, Expression*& e) {
+    const StandardFunction& f = *e->standard;
+    if (f.result == Generic::long_integer) return &lint_type;
+    if (f.result == Generic::double_integer) return &dint_type;
+    const bool counts_ms = e->place.dialect().times_count_ms && f.op != Op::interval_now;
+    if (!counts_ms) return &time_type;
+    e->type = &ltime_type;
+    return f.result == Generic::long_time ? e->type : convert(c, e, time_type);
 }
 
 const Type* check_dtl_arithmetic(Checking& c, Expression*& e) {

@@ -357,6 +357,14 @@ const Type* resolve_name(Checking& c, const Token& name) {
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));
 }
 
+/// `TYPE Colour : (red, green) := Colour.green;`
+static Expression* without_own_name(Checking& c, const TypeDeclaration& declared) {
+    Expression* value = declared.initial;
+    const bool is_of_type = value->kind == E::member && value->operands[0]->kind == E::name &&
+                            same_name(value->operands[0]->token.text, declared.name.text);
+    return is_of_type ? make_name(c, *value, value->token.text) : value;
+}
+
 const Type* resolve_declared(Checking& c, NamedType& named) {
     if (named.type) return named.type;
     const TypeDeclaration& declared = *named.declaration;
@@ -380,7 +388,7 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         Type& copy = c.checked.types.emplace_back(*type);
         copy.initial_value = declared.initial;
         type = &copy;
-        Expression* value = declared.initial;
+        Expression* value = without_own_name(c, declared);
         check_initial(c, value, copy);
         copy.initial_value = value;
     }

@@ -163,7 +163,7 @@ bool Frames::push(std::byte* to, std::uint64_t routine) {
 Fault Frames::save(std::uint64_t routine, std::uint64_t address) {
     const CodeRoutine& called = code.routines[routine];
     std::byte* frame = place(address);
-    const bool runs = called.mark == 0 || word(frame, called.mark) != 0;
+    const bool runs = called.mark == 0 ? called.kept() != 0 : word(frame, called.mark) != 0;
     const bool is_kept = (!runs || has_room(called.depth)) &&
                          keep({runs ? called.kept() : 0, address, routine, running()});
     if (!is_kept) return Fault::calls_too_deep;

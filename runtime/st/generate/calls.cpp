@@ -120,6 +120,14 @@ void put_aside(Writing& w, std::vector<Later>& later) {
     }
 }
 
+/// An input; of an instance that extends its block the part that it has of that.
+void give_value(Writing& w, const Location& to, const Type& type, const Expression& value) {
+    assign(w, to, type, value);
+    const bool is_part = type.kind == Kind::block && value.type != &type && w.code.has_kinds;
+    if (is_part)
+        store(w, behind(to, w.code.kind_slot()), w.constant_slot(w.kinds.at(type.routine)));
+}
+
 /// Inputs and references, and what is left out. Gives what is to be written back. `save`: before
 /// the call is given anything what runs already is kept; all that is given is known then.
 std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
@@ -143,14 +151,14 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
         if (variable.space == Space::reference) {
             refer(w, to, variable, *argument.value, later, lent);
         } else if (!nested) {
-            assign(w, to, type, *argument.value);
+            give_value(w, to, type, *argument.value);
         } else if (type.is_scalar()) {
             later.push_back({to, w.new_temporary()});
             value_to(w, *argument.value, later.back().slot);
         } else {
             const std::uint32_t slots = slots_of(w, type);
             later.push_back({to, w.new_temporary(slots), slots});
-            assign(w, {Mode::slot, later.back().slot}, type, *argument.value);
+            give_value(w, {Mode::slot, later.back().slot}, type, *argument.value);
         }
     }
     if (save) {
@@ -181,6 +189,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
 
 /// What was lent, and outputs.
 void take(Writing& w, const Location& frame, const Expression& e, const std::vector<Lent>& lent) {
+    const Type* callee = e.operands[0] ? e.operands[0]->type : nullptr;
     for (const Lent& one : lent) write(w, one.at, one.copy, *one.type);
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
@@ -190,7 +199,8 @@ void take(Writing& w, const Location& frame, const Expression& e, const std::vec
             e.is_dispatched ? parameter(w, frame, e, variable) : part(w, frame, variable);
         const Type &given = *variable.type, &wanted = *argument.value->type;
         const auto taken = [&] {
-            const Slot slot = load(w, from);
+            Slot slot = load(w, from);
+            if (is_finer_than_ms(callee, given, e.place)) slot = whole_ms(w, slot, e.place);
             return argument.is_negated ? w.emit(Op::not_bool, none, slot)
                                        : convert(w, slot, given, wanted, false, none);
         };

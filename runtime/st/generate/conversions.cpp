@@ -136,8 +136,12 @@ Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
 }
 
 /// Written in SCL, and not for the prelude's own use.
+bool is_of_s7(const Place& place) {
+    return place.dialect().vendor == Vendor::siemens && !place.source->is_prelude();
+}
+
 bool is_of_s7(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::siemens && !e.place.source->is_prelude();
+    return is_of_s7(e.place);
 }
 
 bool is_whole_number(const Type& type) {
@@ -170,7 +174,8 @@ bool is_whole(const Expression& e) {
     const Type &from = *e.operands[0]->type, &to = e.type->plain();
     const bool is_kind = to.kind == Kind::time || to.kind == Kind::clock || !is_of_s7(e);
     return e.place.dialect().times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
-           !to.counts_ns && is_kind && (!from.is_time() || from.counts_ns);
+           !to.counts_ns && is_kind &&
+           (!from.is_time() || from.counts_ns || (from.kind != to.kind && !is_of_s7(e)));
 }
 
 /// A TIME begins again at 2^32 ms, in SCL after 2^31 - 1 with the least one.
@@ -204,6 +209,15 @@ Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
 }
 
 }  // namespace
+
+bool is_finer_than_ms(const Type* block, const Type& type, const Place& place) {
+    return block && block->kind == Kind::standard && type.kind == Kind::time && !type.counts_ns &&
+           place.dialect().times_count_ms && !place.source->is_prelude();
+}
+
+Slot whole_ms(Writing& w, Slot slot, const Place& place, Slot wanted) {
+    return in_whole_units(w, slot, time_type, is_of_s7(place), wanted);
+}
 
 Slot attempted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& given = *e.operands[0];

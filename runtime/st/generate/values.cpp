@@ -227,9 +227,11 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
             return w.constant_slot(*e.type, e.constant);
         case E::index:
             if (e.is_character()) return character(w, e, wanted);
-            [[fallthrough]];
+            return load(w, locate(w, e), wanted);
         case E::member:
             update_timer(w, e);
+            if (is_finer_than_ms(e.operands[0]->type, *e.type, e.place))
+                return whole_ms(w, load(w, locate(w, e)), e.place, wanted);
             [[fallthrough]];
         case E::name:
         case E::deref:

@@ -48,6 +48,12 @@ Slot converted(Writing& w, const Expression& e, Slot wanted);
 /// A number, a time or a boolean in `slot` as one of another type; a real one is rounded, or cut.
 Slot convert(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates, Slot wanted);
 
+/// Whether a TIME of that block, or of none, is one in ns, of a timer, where all others are whole
+/// ms.
+bool is_finer_than_ms(const Type* block, const Type& type, const Place& place);
+/// Such a TIME as the language there has it.
+Slot whole_ms(Writing& w, Slot slot, const Place& place, Slot wanted = none);
+
 // texts.cpp
 
 /// A slot with the address of the value, which is a text.

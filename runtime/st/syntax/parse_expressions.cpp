@@ -287,15 +287,17 @@ Expression* parse_of_type(Parsing& p, Expression* name) {
 /// Variable_Access : ( Primary_Expr | Of_Type )
 ///                   ( '(' Params ')' | '[' Subscripts ']' | '.' Member | '^' ) *
 /// Subscripts : Param_Assign ( ',' Param_Assign ) *
-/// Their values are expressions.
+/// Their values are expressions; those of a declaration may be structures: `[COUNT((x := 1))]`.
 Expression* parse_access(Parsing& p) {
     Expression* left = parse_primary(p);
     while (!p.panic) {
         if (p.is(Word::open) && takes_type(p, *left)) {
             left = parse_of_type(p, left);
         } else if (p.is(Word::open)) {
+            const bool is_initial =
+                !p.before && p.next().word == Word::open && p.at_argument_name(2);
             Expression* call = p.make(Expression::Kind::call, p.take());
-            parse_arguments(p, *call, Word::close, parse_expression);
+            parse_arguments(p, *call, Word::close, is_initial ? parse_initial : parse_expression);
             p.add_operand(*call, 0, left);
             left = call;
         } else if (p.is(Word::open_bracket)) {
