@@ -308,7 +308,7 @@ struct Axis {
     bool follow_steps(const Context& context, const MotionState& guide);
     bool is_matched(const MotionState& slave, const MotionState& guide) const;
     void follow_law(const Context& context);
-    bool gets_onto(const Context& context, const MotionState& guide, bool with_scan);
+    bool gets_onto(const Context& context, const MotionState& guide);
     bool leaves(const Context& context, const MotionState& leader, const Cam& table);
     void follow_approach(const Context& context, const MotionState& leader, const Cam& table);
     void follow_in_sync(const Context& context, const MotionState& leader, const Cam& table);
