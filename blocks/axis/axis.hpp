@@ -360,6 +360,7 @@ struct Axis {
     void keep_directions(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
+    bool takes_over_stop(const Request& request) const;
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);
     void brake(const Moment& at);

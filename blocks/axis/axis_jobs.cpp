@@ -35,7 +35,8 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     const Request& request = job.request;
     if (follows_group() && !is_taken_in_group(request.command))
         return tell(job, Progress::failed, MotionError::axis_in_group);
-    if (state == AxisState::stopping && active.place == place && request.command == Command::stop)
+    if (state == AxisState::stopping && request.command == Command::stop &&
+        (active.place == place || takes_over_stop(request)))
         return stop_again(context, at, job);
     const bool waits =
         request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
@@ -58,6 +59,14 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     }
     if (waits) return wait(context, at, job);
     begin(context, at, job);
+}
+
+/// Where both are ranked, as those of Siemens. One that stands has done its work.
+bool Axis::takes_over_stop(const Request& request) const {
+    const Request& held = active.request;
+    const bool is_ranked = held.command == Command::stop && held.significance > 0;
+    return active.exists() && is_ranked && request.significance > 0 &&
+           (active.told_end != 0 || request.significance >= held.significance);
 }
 
 /// An administrative command, whatever the axis is doing.
