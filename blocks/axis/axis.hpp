@@ -306,6 +306,7 @@ struct Axis {
     void follow(const Context& context);
     void follow_guide(const Context& context);
     bool follow_steps(const Context& context, const MotionState& guide);
+    bool keeps_gear(const Context& context) const;
     bool is_matched(const MotionState& slave, const MotionState& guide) const;
     void follow_law(const Context& context);
     bool gets_onto(const Context& context, const MotionState& guide);

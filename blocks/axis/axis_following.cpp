@@ -110,6 +110,13 @@ bool Axis::is_matched(const MotionState& slave, const MotionState& guide) const 
     return std::abs(slave.velocity - guide.velocity) <= a * seconds(scan_interval);
 }
 
+/// With another ratio, as one that creeps from scan to scan.
+bool Axis::keeps_gear(const Context& context) const {
+    const bool is_geared = doing == Doing::following_axes && sync.law == Law::geared;
+    if (!is_geared || sync.coupling.catch_up != 0) return false;
+    return is_matched(base, sync.guide(master(context), led_by(context, sync.coupling.second)));
+}
+
 void Axis::reach(const Context& context) {
     sync.stage = Stage::in_sync;
     sync.reached = 1;

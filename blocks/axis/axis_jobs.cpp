@@ -100,7 +100,7 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         look_ahead(context);
         blend(context, at);
     }
-    tell(context, running, begun());
+    tell(context, running, keeps_gear(context) ? Progress::reached : begun());
 }
 
 /// StartSync: a slave may leave to meet its master at once, or for its cam.
