@@ -198,7 +198,10 @@ for name in ("mc_movemodulo", "Tc2_MC2.MC_MoveModulo"):
     assert said.startswith("of the library Tc2_MC2:\n// Moves") and "Direction : MC_Direction" in said and "ErrorID" in said, said
     assert "command" not in said, said
 assert "Tc2_MC2" in run("blocks", "Tc2_MC2.MC_MoveAbsolute", code=0)
-assert "Tc2_MC2" not in run("blocks", "MC_MoveAbsolute", code=0)
+said = run("blocks", "MC_MOVEABSOLUTE", code=0)
+assert "mcShortestWay" in said and "lineshaft blocks Tc2_MC2.MC_MoveAbsolute\n" in said, said
+assert "MotionControl.Native.MC_MoveAbsolute\n" in said, said
+assert "Libraries" not in run("blocks", "MC_MovePath", code=0)
 
 # A comment in Latin-1 is text as another.
 (folder / "latin.st").write_bytes("FUNCTION_BLOCK p\nVAR_INPUT x : INT; (* õä *) END_VAR\nEND_FUNCTION_BLOCK\n".encode("iso-8859-1"))

@@ -103,6 +103,8 @@ std::span<const Field> Axis::fields() {
                         "{unit}/s^2", "of the command under way; below 0: the axis' own")),
         of_active(local("asked_jerk", &A::Running::request, &Request::jerk, "{unit}/s^3",
                         "likewise; 0: without a limit")),
+        local("superimposed", &A::added, &A::Running::place, "",
+              "which command adds a distance; below 0: none"),
         local("velocity_factor", &A::factors, &A::Factors::velocity, "", "of MC_SetOverride"),
         local("acceleration_factor", &A::factors, &A::Factors::acceleration, "", "likewise"),
         local("jerk_factor", &A::factors, &A::Factors::jerk, "", "likewise"),

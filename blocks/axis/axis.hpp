@@ -306,9 +306,10 @@ struct Axis {
     void follow(const Context& context);
     void follow_guide(const Context& context);
     bool follow_steps(const Context& context, const MotionState& guide);
+    bool keeps_gear(const Context& context) const;
     bool is_matched(const MotionState& slave, const MotionState& guide) const;
     void follow_law(const Context& context);
-    bool gets_onto(const Context& context, const MotionState& guide, bool with_scan);
+    bool gets_onto(const Context& context, const MotionState& guide);
     bool leaves(const Context& context, const MotionState& leader, const Cam& table);
     void follow_approach(const Context& context, const MotionState& leader, const Cam& table);
     void follow_in_sync(const Context& context, const MotionState& leader, const Cam& table);
@@ -360,6 +361,7 @@ struct Axis {
     void keep_directions(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
+    bool takes_over_stop(const Request& request) const;
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);
     void brake(const Moment& at);

@@ -182,6 +182,8 @@ void Axis::stop_again(const Context& context, const Moment& at, Job& job) {
         }
     }
     end_waiting(context, Progress::aborted);
+    const bool is_other = active.place != context.place_of(job);
+    if (is_other && active.told_end == 0) tell(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, job.request, 0};
     tell(job, Progress::active);
     if (doing == Doing::holding) end_stop(context, at);

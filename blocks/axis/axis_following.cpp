@@ -56,7 +56,7 @@ void Axis::follow_guide(const Context& context) {
     if (sync.stage == Stage::in_transition && sync.in_steps != 0) {
         if (!follow_steps(context, guide)) return;
     } else if (sync.stage == Stage::in_transition) {
-        if (!gets_onto(context, guide, sync.coupling.is_measured())) return;
+        if (!gets_onto(context, guide)) return;
         sync.offset = sync.transition.plan.end.position;
         reach(context);
         if (doing != Doing::following_axes || sync.stage != Stage::in_sync) return;
@@ -65,9 +65,9 @@ void Axis::follow_guide(const Context& context) {
     base.position += sync.offset;
 }
 
-/// Whether the slave has got onto its guide. One that never moves as foreseen, as what is measured,
-/// may be reached with a scan.
-bool Axis::gets_onto(const Context& context, const MotionState& guide, bool with_scan) {
+/// Whether the slave has got onto its guide. A plan that ends before the next scan is kept, also
+/// for a guide that never moves as foreseen, as what is measured.
+bool Axis::gets_onto(const Context& context, const MotionState& guide) {
     const double t = sync.start.until(scan_time);
     base = sync.transition.at(t);
     double left = sync.transition.plan.duration - t;
@@ -75,7 +75,7 @@ bool Axis::gets_onto(const Context& context, const MotionState& guide, bool with
         const MotionError why = lacks(guide, sync.get_onto(base, guide, {scan_time}));
         if (why != MotionError::none) fail(context, {scan_time}, why);
         if (why != MotionError::none) return false;
-        left = sync.transition.plan.duration - (with_scan ? seconds(scan_interval) : 0);
+        left = sync.transition.plan.duration;
     }
     return left <= Moment::same_scan;
 }
@@ -110,6 +110,13 @@ bool Axis::is_matched(const MotionState& slave, const MotionState& guide) const 
     return std::abs(slave.velocity - guide.velocity) <= a * seconds(scan_interval);
 }
 
+/// With another ratio, as one that creeps from scan to scan.
+bool Axis::keeps_gear(const Context& context) const {
+    const bool is_geared = doing == Doing::following_axes && sync.law == Law::geared;
+    if (!is_geared || sync.coupling.catch_up != 0) return false;
+    return is_matched(base, sync.guide(master(context), led_by(context, sync.coupling.second)));
+}
+
 void Axis::reach(const Context& context) {
     sync.stage = Stage::in_sync;
     sync.reached = 1;
@@ -133,7 +140,7 @@ void Axis::follow_law(const Context& context) {
             sync.enter_period(sync.period_from(sync.sync_x, sync.direction, table));
     }
     if (sync.stage == Stage::in_transition &&
-        gets_onto(context, sync.law_at(leader.position, table).led_by(leader), true)) {
+        gets_onto(context, sync.law_at(leader.position, table).led_by(leader))) {
         sync.stage = Stage::in_sync;
         if (table.periodic)
             sync.enter_period(

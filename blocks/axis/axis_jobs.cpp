@@ -35,7 +35,8 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     const Request& request = job.request;
     if (follows_group() && !is_taken_in_group(request.command))
         return tell(job, Progress::failed, MotionError::axis_in_group);
-    if (state == AxisState::stopping && active.place == place && request.command == Command::stop)
+    if (state == AxisState::stopping && request.command == Command::stop &&
+        (active.place == place || takes_over_stop(request)))
         return stop_again(context, at, job);
     const bool waits =
         request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
@@ -58,6 +59,14 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     }
     if (waits) return wait(context, at, job);
     begin(context, at, job);
+}
+
+/// Where both are ranked, as those of Siemens. One that stands has done its work.
+bool Axis::takes_over_stop(const Request& request) const {
+    const Request& held = active.request;
+    const bool is_ranked = held.command == Command::stop && held.significance > 0;
+    return active.exists() && is_ranked && request.significance > 0 &&
+           (active.told_end != 0 || request.significance >= held.significance);
 }
 
 /// An administrative command, whatever the axis is doing.
@@ -91,13 +100,15 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         look_ahead(context);
         blend(context, at);
     }
-    tell(context, running, begun());
+    tell(context, running, keeps_gear(context) ? Progress::reached : begun());
 }
 
-/// StartSync: a slave may leave to meet its master at once.
+/// StartSync: a slave may leave to meet its master at once, or for its cam.
 Progress Axis::begun() const {
+    using Stage = SyncMotion::Stage;
+    const bool ramps_in = sync.law == SyncMotion::Law::cammed && sync.stage == Stage::in_transition;
     const bool leaves =
-        doing == Doing::following_axes && sync.stage == SyncMotion::Stage::approaching;
+        doing == Doing::following_axes && (sync.stage == Stage::approaching || ramps_in);
     return leaves ? Progress::approaching : Progress::active;
 }
 

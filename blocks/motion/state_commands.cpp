@@ -39,8 +39,12 @@ void Power::scan(const Scan& now, const Context& context) {
 }
 
 std::span<const Field> Stop::fields() {
-    static const auto fields =
-        pin::table({pin::deceleration(), pin::jerk()}, pin::done("the axis stands"));
+    static const auto fields = [] {
+        auto made = pin::table({pin::deceleration(), pin::jerk()}, pin::done("the axis stands"));
+        made.push_back(local("Significance", &CommandBlock::pins, &Request::significance, "",
+                             "above 0: it takes over from an MC_Stop that has no greater one"));
+        return made;
+    }();
     return fields;
 }
 

@@ -19,8 +19,9 @@ struct Power : CommandBlock {
 };
 
 /// MC_Stop (3.3): holds the axis in Stopping while Execute is true. Only MC_Power and an error of
-/// the axis abort it: another MC_Stop is refused meanwhile; the same one, begun anew, goes on to
-/// hold the axis, and brakes with its new pins where it then stands sooner.
+/// the axis abort it: another MC_Stop is refused meanwhile, unless both have a Significance; the
+/// same one, begun anew, goes on to hold the axis, and brakes with its new pins where it then
+/// stands sooner.
 struct Stop : CommandBlock {
     static constexpr std::string_view type = "MC_Stop";
     static constexpr std::string_view doc = "stops an axis, and holds it while Execute is true";

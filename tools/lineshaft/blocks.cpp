@@ -93,6 +93,15 @@ bool describe_of_libraries(const Catalog& catalog, const std::string& name) {
     return any;
 }
 
+/// Other libraries that have it, with pins of their own.
+void name_libraries(const Catalog& catalog, const std::string& name) {
+    std::string full;
+    for (const LibraryFile& file : catalog.libraries())
+        if (!head_of(file.text, name).empty())
+            full += fmt::format("\n  lineshaft blocks {}.{}", file.library, name);
+    if (!full.empty()) fmt::print("\nLibraries of vendors have it with their pins:{}\n", full);
+}
+
 /// The type of that name, or all that have to do with the words.
 Exit describe(const Catalog& catalog, const std::vector<std::string>& words, bool json) {
     const BlockType* type = words.size() == 1 ? catalog.find(words.front()) : nullptr;
@@ -115,6 +124,7 @@ Exit describe(const Catalog& catalog, const std::vector<std::string>& words, boo
         fmt::print("{}\n", block_json(*type).dump(2));
     else
         fmt::print("{}", block_text(*type));
+    if (!json) name_libraries(catalog, std::string(type->name));
     return Exit::fine;
 }
 

@@ -41,7 +41,7 @@ bool is_lent(const Expression& e) {
 bool is_kept_as(const Type& given, const Type& number) {
     if (given.is_unchecked) return same_type(*given.base, number);
     return given.kind == Kind::enumeration && given.has_numbers && given.counted &&
-           !given.is_strict && same_type(given.base->plain(), number);
+           same_type(given.base->plain(), number);
 }
 
 /// An instance of another block that extends that of the parameter.

@@ -333,6 +333,9 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return check(c, e, expected);
     }
     if (variable && is_ambiguous(c, token, *variable)) return nullptr;
+    const bool is_for_object = expected && expected->kind == Kind::handle;
+    if (variable && is_for_object && hides_object(token, *variable))
+        return use_object(c, e, *object_type(c, *expected));
     if (variable) {
         const Type* type = variable->edge ? use_edge(c, e, *variable) : use(c, e, *variable);
         return is_s5_number(type) ? signal_of_s5(c, e, *type, expected) : type;
@@ -352,8 +355,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
-    if (expected && expected->kind == Kind::handle && !token.local &&
-        (token.quoted || !c.is_in_test()))
+    if (is_for_object && !token.local && (token.quoted || !c.is_in_test()))
         return use_object(c, e, *object_type(c, *expected));
     if (same_name(token.text, "null") && !token.quoted && !token.local)
         return become(c, e, null_type, {});

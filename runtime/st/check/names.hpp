@@ -82,6 +82,8 @@ const Type* use_object(Checking& c, Expression*& e, const Type& type);
 /// What its kind or a library says of it in Structured Text.
 Routine* find_part(Checking& c, const Type& type, std::string_view name);
 
+/// `"Axis_1"` of SCL is global: a variable of the unit that is called so means nothing there.
+bool hides_object(const Token& quoted, const Variable& found);
 /// `"Axis_1".Position`, where nothing else is called so.
 bool is_object_of(Checking& c, const Expression& member);
 

@@ -101,10 +101,20 @@ bool is_given_to_a_pin(Checking& c, const Token& name) {
 
 }  // namespace
 
+bool hides_object(const Token& quoted, const Variable& found) {
+    const bool is_global = found.space == Space::global || found.space == Space::constant;
+    const bool is_handle = found.type && found.type->kind == Kind::handle;
+    const bool is_scl = quoted.place.source && quoted.place.dialect().vendor == Vendor::siemens;
+    return quoted.quoted && is_scl && !is_global && !is_handle;
+}
+
 bool is_object_of(Checking& c, const Expression& member) {
     const Expression& of = *member.operands[0];
     if (of.kind != E::name || of.type) return false;
-    if (find_variable(c, of.token) || c.find_routine(of.token)) return false;
+    const Variable* found = find_variable(c, of.token);
+    const bool is_hidden = found && found->type && hides_object(of.token, *found) &&
+                           !find_member(*found->type, member.token.text);
+    if ((found && !is_hidden) || c.find_routine(of.token)) return false;
     if (!of.token.quoted && !is_given_to_a_pin(c, of.token)) return false;
     const Type* axis = standard_type(c, technology_object);
     if (!axis || enumeration_of(c, member)) return false;
