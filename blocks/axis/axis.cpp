@@ -24,10 +24,15 @@ void prefetch(const Axis* axis) {
     ask_for(phase, phase + 1);
 }
 
+Field of_sync(Field of_motion) {
+    of_motion.offset += detail::offset_of(&Axis::sync);
+    return of_motion;
+}
+
 /// A field of the gear to its master.
 Field of_gear(Field of_coupling) {
-    of_coupling.offset += detail::offset_of(&Axis::sync) + detail::offset_of(&SyncMotion::coupling);
-    return of_coupling;
+    of_coupling.offset += detail::offset_of(&SyncMotion::coupling);
+    return of_sync(of_coupling);
 }
 
 /// A field of the request at work.
@@ -118,6 +123,9 @@ std::span<const Field> Axis::fields() {
                       "of the ratio to the axis that it follows")),
         of_gear(
             local("gear_denominator", &Coupling::master, &MasterLink::denominator, "", "likewise")),
+        of_sync(local("phase_shift", &SyncMotion::shift, &MotionState::position, "",
+                      "of the axis that it follows, as it sees it")),
+        local("phasing", &A::phased, &A::Running::place, "", "below 0: that does not move"),
         local("followers", &A::followers, "", "axes that follow it"),
         local("commands", &A::commands, "", "that it has begun"),
         local("waiting", &A::queue, &JobList::first, "", "below 0: no command waits"),
