@@ -24,6 +24,17 @@ void prefetch(const Axis* axis) {
     ask_for(phase, phase + 1);
 }
 
+Field of_sync(Field of_motion) {
+    of_motion.offset += detail::offset_of(&Axis::sync);
+    return of_motion;
+}
+
+/// A field of the gear to its master.
+Field of_gear(Field of_coupling) {
+    of_coupling.offset += detail::offset_of(&SyncMotion::coupling);
+    return of_sync(of_coupling);
+}
+
 /// A field of the request at work.
 Field of_active(Field of_running) {
     of_running.offset += detail::offset_of(&Axis::active);
@@ -110,6 +121,19 @@ std::span<const Field> Axis::fields() {
         local("jerk_factor", &A::factors, &A::Factors::jerk, "", "likewise"),
         local("synchronization", &A::sync, &SyncMotion::stage, "", "in synchronized_motion")
             .one_of(SyncMotion::stage_names),
+        of_gear(local("gear_numerator", &Coupling::master, &MasterLink::numerator, "",
+                      "of the ratio to the axis that it follows")),
+        of_gear(
+            local("gear_denominator", &Coupling::master, &MasterLink::denominator, "", "likewise")),
+        of_sync(local("phase_shift", &SyncMotion::shift, &MotionState::position, "",
+                      "of the axis that it follows, as it sees it")),
+        local("phasing", &A::phased, &A::Running::place, "", "below 0: that does not move"),
+        local("followers", &A::followers, "", "axes that follow it"),
+        local("commands", &A::commands, "", "that it has begun"),
+        local("waiting", &A::queue, &JobList::first, "", "below 0: no command waits"),
+        local("superimposed", &A::added, &A::Running::place, "", "below 0: nothing is on top"),
+        local("goal", &A::goal, "{unit}", "of the move at work, without what is on top"),
+        local("added_goal", &A::added_goal, "{unit}", "what is on top then"),
     };
     return table;
 }
@@ -147,6 +171,7 @@ void Axis::scan(const Scan& now, const Context& context) {
     }
     if (software_limits) keep_limits(context);
     if (enables_positive == 0 || enables_negative == 0) keep_directions(context);
+    if (is_counted || doing == Doing::following_axes) count_masters(context);
     publish();
 }
 
@@ -175,6 +200,9 @@ void Axis::wake_up(std::int64_t now) {
     safe = {};
     offset = lasting = added_goal = 0;
     withdrawn = added_paused = added_counted = 0;
+    is_counted = false;
+    followers = 0;
+    counted = counted_second = nowhere;
     powered = enables_positive = enables_negative = 1;
     switched = 0;
     hold({.position = place}, {now});

@@ -90,6 +90,7 @@ struct Axis {
     double position = 0, velocity = 0, acceleration = 0, jerk = 0;
     bool error = false, homed = false;
     bool modulo = false, software_limits = false, has_drive = false;  ///< parameters
+    bool is_counted = false;  ///< its masters count it among their followers
     Doing doing = Doing::holding;
     MotionState base;   ///< of the motion beneath, without what is added (README.md)
     double offset = 0;  ///< what the position is further than `base` and `extra`
@@ -143,6 +144,9 @@ struct Axis {
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
+    std::int64_t commands = 0;                                 ///< that it has begun
+    std::int64_t followers = 0;                                ///< axes that follow it
+    std::int64_t counted = nowhere, counted_second = nowhere;  ///< those, with is_counted
     Safe safe;
     std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
     std::int64_t led_at = 0;       ///< when its group, or a command, moved it last [ns]
@@ -301,6 +305,7 @@ struct Axis {
     void begin_phasing(const Context& context, Job& job);
 
     // axis_following.cpp: they are followed.
+    void count_masters(const Context& context);
     bool follows_itself(const Context& context) const;
     void look_at_shift(const Context& context);
     void follow(const Context& context);
@@ -325,6 +330,7 @@ struct Axis {
     void carry_out(const Context& context, const Moment& at, Job& job);
     void change(const Context& context, const Moment& at, Running& running, const Job& job);
     Progress begun() const;
+    bool is_endless() const;
     void wait(const Context& context, const Moment& at, Job& job);
     void begin(const Context& context, const Moment& at, Job& job, const Stretch* along = nullptr);
     void begin_next(const Context& context, const Moment& at, const Stretch* rest = nullptr);
@@ -362,6 +368,7 @@ struct Axis {
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
     bool takes_over_stop(const Request& request) const;
+    void release(const Context& context, const Moment& at);
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);
     void brake(const Moment& at);

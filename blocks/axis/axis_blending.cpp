@@ -26,6 +26,13 @@ double wanted_velocity(BufferMode mode, double previous, double next) {
     }
 }
 
+/// TwinCAT's halts that begin where the move before was to end.
+bool halts_behind(const Request& request) {
+    return request.command == Command::halt && request.of_twincat != 0 &&
+           (request.mode == BufferMode::blending_previous ||
+            request.mode == BufferMode::blending_high);
+}
+
 constexpr double slightly_less = 1 - 1e-9;  ///< for rounding, where a plan just goes
 
 /// 1 or -1, or 0: nowhere.
@@ -52,6 +59,8 @@ void Axis::foresee_way(const Request& request, double start, double direction, A
         if (request.direction == MoveDirection::current && direction != 0)
             v = std::copysign(v, direction);
         to.direction = sign_towards(v);
+    } else if (halts_behind(request)) {
+        to.direction = direction;
     } else if (ends_standing(request.command) || is_continuous(request.command)) {
         Start there;
         there.state.position = there.origin = start;
@@ -69,7 +78,7 @@ void Axis::foresee_speeds(const Request& request, const Request& before, double 
                         to.direction * direction > 0 && own.valid()
                     ? 1
                     : 0;
-    const bool on_and_on = request.command == Command::move_velocity;
+    const bool on_and_on = request.command == Command::move_velocity || halts_behind(request);
     to.joins = to.passes != 0 && !on_and_on && own == previous ? 1 : 0;
     to.stretch_end = to.goal;
     to.exit = to.entry = {};
@@ -85,8 +94,12 @@ void Axis::foresee_speeds(const Request& request, const Request& before, double 
         to.exit = behind->entry;
     }
     if (to.passes == 0) return;
-    const double v = on_and_on ? std::abs(request.velocity) * factors.velocity : own.velocity;
-    const double wanted = wanted_velocity(request.mode, previous.velocity, v);
+    const double v = request.command == Command::move_velocity
+                         ? std::abs(request.velocity) * factors.velocity
+                         : own.velocity;
+    const double wanted = halts_behind(request)
+                              ? previous.velocity
+                              : wanted_velocity(request.mode, previous.velocity, v);
     to.entry =
         on_and_on ? Speeds{0, wanted} : entries(room_between(start, to.stretch_end), to.exit, own);
     to.entry.greatest = std::min(to.entry.greatest, wanted);

@@ -72,6 +72,7 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
             return MotionError::none;
         case Command::reset:
             if (state == AxisState::error_stop) leave_error();
+            if (state == AxisState::stopping && request.of_twincat != 0) release(context, at);
             return MotionError::none;
         case Command::set_position:
             return set_position(context, at, request);
@@ -187,6 +188,12 @@ void Axis::stop_again(const Context& context, const Moment& at, Job& job) {
     active = {context.place_of(job), job.ticket, job.request, 0};
     tell(job, Progress::active);
     if (doing == Doing::holding) end_stop(context, at);
+}
+
+/// The MC_Stop at work does not hold the axis any more.
+void Axis::release(const Context& context, const Moment& at) {
+    active.request.holds = 0;
+    if (active.told_end != 0) end_hold(context, at);
 }
 
 void Axis::leave_error() {

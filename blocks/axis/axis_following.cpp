@@ -30,6 +30,24 @@ void Axis::look_at_shift(const Context& context) {
     if (has_ended) end(context, phased, Progress::done);
 }
 
+/// The axes that it follows know of it from the scan on in which that changes.
+void Axis::count_masters(const Context& context) {
+    is_counted = doing == Doing::following_axes;
+    const auto count = [&](std::int64_t& counted_one, std::int64_t master) {
+        if (counted_one == master) return;
+        const auto change = [&](std::int64_t by) {
+            if (counted_one == nowhere) return;
+            Axis& leader = context.instance<Axis>(counted_one);
+            leader.followers = std::max<std::int64_t>(0, leader.followers + by);
+        };
+        change(-1);
+        counted_one = master;
+        change(1);
+    };
+    count(counted, is_counted ? sync.coupling.master.axis : nowhere);
+    count(counted_second, is_counted ? sync.coupling.second.axis : nowhere);
+}
+
 /// Axes of different tasks that are coupled to each other in the same moment do not see it then.
 bool Axis::follows_itself(const Context& context) const {
     const auto is_of_other_task = [&](const MasterLink& link) {

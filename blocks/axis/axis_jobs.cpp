@@ -38,6 +38,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (state == AxisState::stopping && request.command == Command::stop &&
         (active.place == place || takes_over_stop(request)))
         return stop_again(context, at, job);
+    if (request.of_twincat != 0 && is_endless()) job.request.mode = BufferMode::aborting;
     const bool waits =
         request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
     const bool is_of_slave = is_phasing(request.command) || request.command == Command::gear_out ||
@@ -112,7 +113,14 @@ Progress Axis::begun() const {
     return leaves ? Progress::approaching : Progress::active;
 }
 
+/// Whether what is at work never ends by itself.
+bool Axis::is_endless() const {
+    return state == AxisState::continuous_motion && !is_continuous(active.request.command);
+}
+
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
+    if (job.request.of_twincat != 0 && queue.first != nowhere)
+        return tell(job, Progress::failed, MotionError::buffer_full);
     if (!may_wait(context, job.request))
         return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
@@ -155,6 +163,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     if (aborts) abort_all(context);
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
+    ++commands;
     const bool was_overridden = is_overridden();
     state = *next;
     added_counted = added.exists() && is_absolute(request.command) ? 1 : 0;

@@ -265,15 +265,18 @@ Cam Axis::cam(const Context& context) const {
 void Axis::begin_phasing(const Context& context, Job& job) {
     const Request& request = job.request;
     const Dynamics d = dynamics_of(request);
-    const bool relative = request.command == Command::phasing_relative;
-    const double to = request.position + (relative ? sync.shift.position : 0);
+    const std::int64_t place = context.place_of(job);
+    const bool is_new = phased.place != place || phased.ticket != job.ticket;
+    const double from = is_new ? sync.shift.position : phased.from;
+    double to = request.position;
+    if (request.command == Command::phasing_relative) to += from;
+    if (request.holds != 0 && d.valid()) to = stopping_position(sync.shift, d);
     const PlanResult planned = d.valid() ? sync.shifting.begin(sync.shift, to, 0, d, {scan_time})
                                          : PlanResult::limit_not_positive;
     if (planned != PlanResult::ok) return tell(job, Progress::failed, sync_error(planned));
-    const std::int64_t place = context.place_of(job);
-    if (phased.place != place || phased.ticket != job.ticket) {
+    if (is_new) {
         end(context, phased, Progress::aborted);
-        phased = {place, job.ticket, request, 0, sync.shift.position};
+        phased = {place, job.ticket, request, 0, from};
     }
     phased.request = request;
     tell(job, Progress::active);

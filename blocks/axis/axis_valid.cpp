@@ -89,6 +89,14 @@ bool steps_are_few(const Axis& axis, const KeptState& machine) {
                       sync.start.until(machine.now) <= most * axis.transition_quantum);
 }
 
+bool counts_are_valid(const Axis& axis, const KeptState& machine) {
+    const auto is_axis = [&](std::int64_t number) {
+        return number == nowhere || is_instance<Axis>(machine.context, number);
+    };
+    return is_count(axis.followers) && are_booleans(axis.is_counted) && is_axis(axis.counted) &&
+           is_axis(axis.counted_second);
+}
+
 /// Of the axis and all that it follows as it sees them. They may follow each other (Axis::follow).
 bool masters_are_valid(const Axis& axis, const KeptState& machine) {
     std::vector<const Axis*> open{&axis};
@@ -193,7 +201,8 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
            is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
            machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) &&
            is_valid(axis.shortage) && is_count(axis.scan_interval) && is_count(axis.renamed) &&
-           is_count(axis.trigger_aborts) && masters_are_valid(axis, machine) &&
+           is_count(axis.trigger_aborts) && is_count(axis.commands) &&
+           counts_are_valid(axis, machine) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
 }
 

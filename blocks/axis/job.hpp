@@ -72,6 +72,7 @@ enum class MotionError : std::int64_t {
     axis_moves,
     axis_left_path,
     no_arc,
+    buffer_full,
 };
 
 inline constexpr std::string_view motion_error_names[] = {"none",
@@ -106,7 +107,8 @@ inline constexpr std::string_view motion_error_names[] = {"none",
                                                           "task_of_group",
                                                           "axis_moves",
                                                           "axis_left_path",
-                                                          "no_arc"};
+                                                          "no_arc",
+                                                          "buffer_full"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -143,7 +145,9 @@ inline constexpr std::string_view motion_error_texts[] = {
     "an axis is not in the task of its group",
     "an axis of the group is in a motion of its own",
     "an axis of the group has no power or an error, and has left the path",
-    "no arc leads through the points, or about the centre, to where it is to end"};
+    "no arc leads through the points, or about the centre, to where it is to end",
+    "another command waits already, and the axis keeps one: start it when that is Active, or with "
+    "BufferMode MC_Aborting"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {
@@ -171,11 +175,13 @@ struct Request {
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
-    std::int64_t holds = 0;         ///< Execute of MC_Stop, Enable of MC_MotionInPosition
+    std::int64_t holds =
+        0;  ///< Execute of MC_Stop, Enable of MC_MotionInPosition; MC_Phasing halts
     std::int64_t relative = 0;      ///< of MC_SetPosition
     std::int64_t homes = 0;         ///< of MC_SetPosition: the position is known then
     std::int64_t jogs = 0;          ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater
+    std::int64_t of_twincat = 0;    ///< 1: by TwinCAT's rules (README.md)
     std::int64_t parameter = 0;     ///< number, of MC_WriteParameter and MC_WriteBoolParameter
     HomingMode homing = HomingMode::direct;
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride

@@ -218,7 +218,9 @@ std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first
                 "another command has taken over"),
          output("Error", &CommandBlock::error, "",
                 "the command is refused, or the axis has failed"),
-         output("ErrorID", &CommandBlock::error_id, "", "why").one_of(motion_error_names)});
+         output("ErrorID", &CommandBlock::error_id, "", "why").one_of(motion_error_names),
+         local("OfTwinCAT", &CommandBlock::pins, &Request::of_twincat, "",
+               "1: by TwinCAT's rules for what waits, halts and is reset")});
     return fields;
 }
 

@@ -79,8 +79,8 @@ std::vector<Field> slave_table(std::initializer_list<Field> inputs, const Field&
 }
 
 std::vector<Field> phasing_table() {
-    return slave_table(
-        {master(),
+    auto table = slave_table(
+        {master(), pin::continuous_update(),
          input("PhaseShift", &CommandBlock::pins, &Request::position, "{Master}",
                "above 0: the slave leads"),
          of_master(pin::velocity()), of_master(pin::acceleration()), of_master(pin::deceleration()),
@@ -89,6 +89,9 @@ std::vector<Field> phasing_table() {
         {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now"),
          output("CoveredPhaseShift", &Phasing::covered_shift, "{Master}",
                 "that the command has added so far")});
+    table.push_back(local("Halts", &CommandBlock::pins, &Request::holds, "",
+                          "1: the shift ends where it then stands"));
+    return table;
 }
 
 }  // namespace
