@@ -1059,8 +1059,8 @@ END_DATA_BLOCK
 """)
     run("new", "memory", "--from", "Memory")
     text = (work / "memory.yaml").read_text()
-    for line in ("  clock_memory: {every: 50 ms, priority: 17}\n", "type: System memory of Default tag table, task: main}\n  Main: {type: Main, task: main}\n",
-                 "type: Clock memory of Default tag table, task: clock_memory}\n", "type: Clock memory of Others, task: clock_memory}\n"):
+    for line in ("  clock_memory: {every: 50 ms, priority: 17}\n", "type: 'System memory of Default tag table', task: main}\n  Main: {type: Main, task: main}\n",
+                 "type: 'Clock memory of Default tag table', task: clock_memory}\n", "type: 'Clock memory of Others', task: clock_memory}\n"):
         assert line in text, (line, text)
     write("memory.yaml", text.replace("run: {for: 1 s}", "run: {for: 1.595 s}") + "expect:\n" + "".join(f"  - {{at: end, Data.{name}: {value}}}\n"
           for name, value in (("first", 1), ("always", 160), ("early", 16), ("high", 60), ("slow", 80), ("fast", 80), ("none", 0))))

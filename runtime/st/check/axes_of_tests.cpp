@@ -48,10 +48,13 @@ class Giving {
         if (type.kind == Kind::array) return give_elements(type, path, part);
         const bool is_block = type.kind == Kind::block;
         if (!is_block && type.kind != Kind::structure) return;
+        if (std::ranges::count(open_, &type) > 0) return;  // it is in itself, which is told
+        open_.push_back(&type);
         for (const Variable* member : is_block ? all_variables(*type.routine) : type.members)
             if (!is_block || is_own(*member))
                 give(*member->type, fmt::format("{}.{}", path, member->text),
                      [&] { return make_member(c_, part(), member->text); });
+        open_.pop_back();
     }
 
     void give_elements(const Type& array, const std::string& path, const Part& part) {
@@ -75,6 +78,7 @@ class Giving {
     Checking& c_;
     Routine* test_ = nullptr;
     Expression like_;
+    std::vector<const Type*> open_;             ///< what is given something, the outermost first
     std::map<std::string, Variable*> objects_;  ///< by what has them
 };
 
