@@ -59,7 +59,7 @@ void lack(Catalog& blocks, std::span<const Lack> table) {
         for (const std::string_view name : row.names) blocks.lack(name, row.instead);
 }
 
-/// Blocks of SoftMotion's CNC.
+/// Blocks of SoftMotion, above all of its CNC.
 void lack_of_softmotion(Catalog& blocks) {
     const Lack table[] = {
         {"G code is not run here: write its points as a path_table, and run along them with a "
@@ -77,7 +77,35 @@ void lack_of_softmotion(Catalog& blocks) {
          {"SMC_ControlAxisByVel"}},
         {"leave it out: the axes of a group are Cartesian here, and their positions the "
          "coordinates",
-         {"SMC_TRAFO_Gantry2", "SMC_TRAFO_Gantry3", "SMC_TRAFOF_Gantry2", "SMC_TRAFOF_Gantry3"}}};
+         {"SMC_TRAFO_Gantry2", "SMC_TRAFO_Gantry3", "SMC_TRAFOF_Gantry2", "SMC_TRAFOF_Gantry3"}},
+        {"read Error and ErrorID of the blocks themselves: an axis keeps no list of their errors",
+         {"SMC_ReadFBError", "SMC_ClearFBError"}},
+        {"leave it out: lineshaft blocks MC_MoveAbsolute lists the values of ErrorID",
+         {"SMC_ErrorString"}},
+        {"take SMC3_ReinitDrive", {"SMC_ReinitDrive", "SMC_StartupDrive"}},
+        {"leave it out: an axis counts in its own unit, and the gear of its motor is a "
+         "transmission",
+         {"SMC_ChangeGearingRatio"}},
+        {"leave it out: commands say with Jerk whether the acceleration ramps, and an axis with "
+         "default_jerk",
+         {"SMC_SetRampType"}},
+        {"an axis is led by its position here and has no torque: wire a servo_drive, whose "
+         "mechanics have forces",
+         {"SMC_SetTorque", "MC_SetTorqueLimit"}},
+        {"leave it out: an axis has no brake, and takes no position from the run before",
+         {"SMC_BrakeControl", "SMC_BrakeStatus", "SMC3_BrakeControl", "SMC3_BrakeStatus",
+          "SMC3_PersistPosition"}},
+        {"write the points of the cam as MC_CAM_REF in the program",
+         {"SMC_ReadCAM", "SMC_WriteCAM"}}};
+    lack(blocks, table);
+}
+
+/// Of B&R's motion before mapp.
+void lack_of_br(Catalog& blocks) {
+    const Lack table[] = {
+        {"ACP10_MC is not here, whose blocks take an axis by its address: give PLCopen's blocks an "
+         "axis of the program, PLCopen.MC_Power with VAR_IN_OUT Axis : AXIS_REF",
+         {"ACP10AXIS_typ", "ACP10VAXIS_typ"}}};
     lack(blocks, table);
 }
 
@@ -253,6 +281,7 @@ Catalog make_catalog() {
                     "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
                     "mechanics have forces");
     lack_of_siemens(blocks);
+    lack_of_br(blocks);
     lack_of_softmotion(blocks);
     blocks.add_libraries(vendor_libraries());
     return blocks;

@@ -182,8 +182,8 @@ Field jerk() {
                  "axis' own");
 }
 
-Field direction() {
-    return input("Direction", &CommandBlock::pins, &Request::direction, "", "of a modulo axis")
+Field direction(std::string_view doc) {
+    return input("Direction", &CommandBlock::pins, &Request::direction, "", doc)
         .one_of(move_direction_names);
 }
 

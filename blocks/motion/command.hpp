@@ -111,7 +111,7 @@ Field end_velocity();
 Field acceleration();
 Field deceleration();
 Field jerk();
-Field direction();
+Field direction(std::string_view doc = "of a modulo axis");
 Field buffer_mode();
 Field execution_mode();
 Field done(std::string_view doc = "the command has been carried out");

@@ -26,9 +26,12 @@ std::span<const Field> distance_fields() {
 
 std::span<const Field> velocity_fields() {
     static const auto fields = [] {
-        auto made = table({continuous_update(), velocity("wanted, with its sign"), acceleration(),
-                           deceleration(), jerk(), direction(), buffer_mode()},
-                          reached("InVelocity", "the velocity is reached"));
+        auto made = table(
+            {continuous_update(), velocity("wanted, with its sign"), acceleration(), deceleration(),
+             jerk(),
+             direction("negative: the other way than Velocity says; current: as the axis moves"),
+             buffer_mode()},
+            reached("InVelocity", "the velocity is reached"));
         made.push_back(
             local("Jogs", &CommandBlock::pins, &Request::jogs, "", "1: it is that of MC_MoveJog"));
         return made;

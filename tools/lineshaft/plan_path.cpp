@@ -81,8 +81,8 @@ void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
         sub.add_flag("--path", is_path, "Plan along paths through points; see below");
     CLI::Option* limits =
         sub.add_option("--limits", options.limits,
-                       "Velocity, acceleration and jerk along the path, then of the first axis, of "
-                       "the second and so on; the last one counts for all further axes")
+                       "Velocity, acceleration and jerk along the path; the option is repeated for "
+                       "each axis, from the first one on; the last one counts for all further axes")
             ->type_name("V,A,J")
             ->expected(1, static_cast<int>(most_path_axes) + 1)
             ->delimiter('\0')

@@ -260,7 +260,9 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     if (target.kind == E::self || target.kind == E::deref) return true;
     if (is_tag_of_axis(target))
         return refuse("a tag of an axis",
-                      "it is read only: MC_SetOverride and MC_WriteParameter set what can be set");
+                      "it is read only here: give the axis its value in YAML (default_velocity: 80 "
+                      "mm/s), or call PLCopen.MC_SetOverride or PLCopen.MC_WriteParameter, which "
+                      "lineshaft has beside the controller's blocks");
     if (target.kind != E::name && target.kind != E::member)
         return refuse("a value", "a variable, an element or a member stands left of ':='");
     Variable* variable = target.variable;
