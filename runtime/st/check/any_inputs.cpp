@@ -41,6 +41,15 @@ bool takes(std::string_view family, const Type& given) {
     return true;
 }
 
+/// A typed value as it is written stands in a variable, to have a place: CODESYS takes none.
+void keep_value(Checking& c, Expression*& value) {
+    if (!c.routine || &value->place.dialect() != &iec || !check(c, value)) return;
+    if (value->kind != E::constant || value->variable || value->type->is_any()) return;
+    Variable& kept = c.make_variable(*c.routine, value->token, value->token.text, value->type);
+    kept.initial = value;
+    value = make_use(c, *value, kept);
+}
+
 }  // namespace
 
 bool is_any_input(const Type& type) {
@@ -55,6 +64,7 @@ void become_any(Checking& c, Expression*& value, const Type& type) {
         value->type = &type;
         return;
     }
+    keep_value(c, value);
     Expression* place = make_call(c, "__SYSTEM.ADR", value);
     const Type* pointer = check(c, place);
     if (!pointer) return;

@@ -419,7 +419,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     }
     if (callee.kind == E::name)
         if (const Routine* block = block_with_method(c, callee.token);
-            block && !means_standard(*e, *find_in(block->methods, callee.token.text))) {
+            block && !means_function(c, *e, *find_in(block->methods, callee.token.text))) {
             Routine& first = *find_in(block->methods, callee.token.text);
             Routine& method = overload_of(c, *e, block->overloads, first);
             e->is_dispatched = method.is_replaced;
@@ -434,8 +434,7 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
                 !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||
                 !is_given_bytes(c, *e, *routine))
                 return nullptr;
-            const auto& overloads = c.names_beside(routine->pou->name).overloads;
-            return check_routine_call(c, e, overload_of(c, *e, overloads, *routine), as_statement);
+            return check_routine_call(c, e, function_called(c, *e, *routine), as_statement);
         }
         const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
                                  (find_standard_function(name) || !find_variable(c, callee.token));

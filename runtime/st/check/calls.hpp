@@ -26,9 +26,13 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter);
 /// conversion. Where none fits it is the first, whose call is refused then.
 Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Routine*>>& overloads,
                      Routine& first);
-/// The call gives more than the method of that name takes, and what a function of the standard
-/// does.
-bool means_standard(const Expression& call, const Routine& method);
+/// The function that a call of the name of `first` means: of the namespaces that are seen there the
+/// innermost that has an overload which fits.
+Routine& function_called(Checking& c, Expression& call, Routine& first);
+/// A call without THIS means a function, though the block has a method of that name: a function of
+/// the sources or of a library they use, as SIMATIC AX has it; or one of the standard, where the
+/// call gives more than the method takes.
+bool means_function(Checking& c, const Expression& call, const Routine& method);
 
 // timers.cpp
 

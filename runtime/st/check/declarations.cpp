@@ -95,13 +95,15 @@ void declare_edge(Checking& c, Routine& routine, Variable& variable, const Token
 /// `a : ARRAY[*] OF INT` is given as where its first element is, and its bounds beside it, the
 /// lower and the upper one of each dimension.
 void declare_bounds(Checking& c, Routine& routine, Variable& array) {
-    array.section = Section::input;
-    array.space = Space::frame;
+    if (array.is_parameter()) {
+        array.section = Section::input;
+        array.space = Space::frame;
+    }
     for (std::size_t i = 0; i < 2 * array.type->dimensions; ++i) {
         Variable& made = c.make_variable(
             routine, array.name, c.checked.names.emplace_back(bound_name(array, i % 2 == 0, i / 2)),
             &lint_type);
-        made.section = Section::input;
+        made.section = array.section;
         made.bound_of = &array;
         routine.names.emplace(made.text, &made);
     }
@@ -203,8 +205,9 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         const bool is_given = block.section == Section::in_out || block.section == Section::input ||
                               (block.section == Section::output && !routine.has_instances());
         const Type* type = !declared->type ? nullptr
-                           : is_given      ? resolve_parameter(c, *declared->type)
-                                           : resolve(c, *declared->type);
+                           : is_given || refers_to_open_array(*declared->type)
+                               ? resolve_parameter(c, *declared->type)
+                               : resolve(c, *declared->type);
         const bool is_pointed_at = is_given && type && is_variant(*type);
         const bool is_value = takes_values(block, type) || is_pointed_at;
         const Section section = is_value ? Section::input : block.section;

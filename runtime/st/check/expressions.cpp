@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 
@@ -30,6 +31,7 @@ const Type* check_kind(Checking& c, Expression*& e, const Type* expected) {
         case E::typed:
             return check_typed(c, e);
         case E::deref:
+            if (take_referred_array(c, e)) return e->type;
             return check_target_of(c, *e);
         case E::list:
         case E::repeated:

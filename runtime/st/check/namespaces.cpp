@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -32,13 +33,25 @@ std::string find_namespace(const Checking& c, Place place, std::string_view name
     return is_namespace(c, name) ? std::string(name) : std::string();
 }
 
-void refuse_namespace(Checking& c, Place place, std::string_view path) {
-    if (!c.namespaces.emplace(c.checked.names.emplace_back(path), false).second) return;
+/// Of its own libraries, which come with it.
+bool is_of_ax(std::string_view path) {
+    const std::string name = lower(path);
+    return name.starts_with("system.") || name.starts_with("siemens.simatic.");
+}
+
+std::string namespace_meant(const Checking& c, std::string_view path) {
     std::vector<std::string> names;
     for (const auto& [known, is_there] : c.namespaces)
         if (is_there) names.emplace_back(known);
     std::ranges::sort(names);
     const std::string near = suggest(path, names);
+    return near.starts_with("did you") ? near
+                                       : "give the sources that declare it, too, as test does with "
+                                         "--source FOLDER";
+}
+
+void refuse_namespace(Checking& c, Place place, std::string_view path) {
+    if (!c.namespaces.emplace(c.checked.names.emplace_back(path), false).second) return;
     Token name;
     name.text = path;
     name.place = place;
@@ -50,8 +63,13 @@ void refuse_namespace(Checking& c, Place place, std::string_view path) {
         return (void)c.fail(code::not_declared, place,
                             fmt::format("the library '{}' is here without this", path),
                             fmt::format("declare it in your sources, without '{}.'", path));
+    if (is_of_ax(path))
+        return (void)c.fail(
+            code::not_declared, place,
+            fmt::format("the library '{}' of SIMATIC AX is not here", path),
+            fmt::format("declare what you use of it in a source of yours, in NAMESPACE {}", path));
     c.fail(code::not_declared, place, fmt::format("there is no namespace '{}'", path),
-           near.empty() ? "give the sources that declare it, too" : near);
+           namespace_meant(c, path));
 }
 
 /// `a.b.x`; empty: there is more to it than names.
@@ -123,7 +141,9 @@ void collect_namespaces(Checking& c) {
                     made.paths.push_back(p);
                 for (const Token& used : s->usings) {
                     const std::string_view path = library_called(used.text);
-                    if (is_namespace(c, path) || is_namespace_of_assertions(path))
+                    const bool has_assertions = is_namespace_of_assertions(path);
+                    c.has_tests |= has_assertions;
+                    if (is_namespace(c, path) || has_assertions)
                         made.paths.push_back(path);
                     else
                         c.unknown_usings.push_back(used), made.is_whole = false;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 
@@ -13,10 +16,54 @@ std::string bound_name(const Variable& array, bool is_lower, std::size_t dimensi
 }
 
 Expression* bound_of(Checking& c, const Expression& array, bool is_lower, std::size_t dimension) {
-    Expression* made = make_name(
-        c, array, c.checked.names.emplace_back(bound_name(*array.variable, is_lower, dimension)));
+    const std::string_view name =
+        c.checked.names.emplace_back(bound_name(*array.variable, is_lower, dimension));
+    if (array.kind == E::member) {
+        Expression* made = make_copy(c, array);
+        made->token.text = name;
+        made->variable = find_member(*array.operands[0]->type, name);
+        made->type = &lint_type;
+        return made;
+    }
+    Expression* made = make_name(c, array, name);
     check(c, made);
     return made;
+}
+
+/// `a` of `REF(a)`; else the expression itself.
+static Expression* without_ref(Expression* e) {
+    const bool is_ref = e->kind == E::call && e->operands[0]->kind == E::name &&
+                        same_name(e->operands[0]->token.text, "ref") && e->arguments.size() == 1;
+    return is_ref ? e->arguments[0].value : e;
+}
+
+bool take_referred_array(Checking& c, Expression*& e) {
+    const Type* type = check(c, e->operands[0]);
+    if (!type || !type->is_open_array()) return false;
+    e = e->operands[0];
+    return true;
+}
+
+void assign_open_array(Checking& c, Statement*& s) {
+    Expression& target = *s->target;
+    if (!target.variable || !check_target(c, target)) return;
+    if (without_ref(s->value) == s->value) {
+        if (!check(c, s->value, target.type)) return;
+        if (s->value->type == &null_type) return (void)coerce(c, s->value, *target.type);
+    }
+    std::vector<Expression*> bounds;
+    std::vector<Variable*> variables;
+    for (std::size_t i = 0; i < 2 * target.type->dimensions; ++i) {
+        bounds.push_back(bound_of(c, target, i % 2 == 0, i / 2));
+        variables.push_back(bounds.back()->variable);
+    }
+    std::vector<Argument> given;
+    give_open_array(c, {.value = s->value}, *target.variable, variables, given);
+    if (given.empty()) return;
+    Block assigned{make_assignment(c, s->place, s->target, given[0].value)};
+    for (std::size_t i = 0; i < bounds.size(); ++i)
+        assigned.push_back(make_assignment(c, s->place, bounds[i], given[i + 1].value));
+    s = make_sequence(c, s->place, std::move(assigned));
 }
 
 Expression* moved_in_open_array(Checking& c, const Expression& e) {
@@ -35,7 +82,7 @@ Expression* moved_in_open_array(Checking& c, const Expression& e) {
 
 void give_open_array(Checking& c, const Argument& argument, Variable& array,
                      const std::vector<Variable*>& bounds, std::vector<Argument>& to) {
-    Expression* given = argument.value;
+    Expression* given = without_ref(argument.value);
     const Type& open = *array.type;
     const Type* type = check(c, given);
     if (!type || !open.element) return;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -11,6 +13,7 @@ namespace {
 std::optional<int> closeness(const Type& from, const Type& to) {
     constexpr int same = 8, alike = 6, usual = 5, possible = 3;
     if (same_type(from, to)) return same;
+    if (is_any_input(to)) return 0;
     if (&from == &null_type)
         return to.is_reference() || to.kind == Kind::interface ? std::optional(possible)
                                                                : std::nullopt;
@@ -49,6 +52,14 @@ std::optional<int> closeness(const Variable& parameter, const Type& given) {
     return goes_out ? closeness(*parameter.type, given) : closeness(given, *parameter.type);
 }
 
+/// A number as it is written goes only where it is in range.
+bool is_in_range(const Expression& given, const Type& to) {
+    const bool is_written = given.kind == E::constant && given.type->kind == Kind::any_integer;
+    const Wide value = given.constant.integer;
+    return !is_written || to.kind != Kind::integer ||
+           (value >= smallest(to) && value <= largest(to));
+}
+
 bool is_of_no_parameter(const Argument& argument) {
     return argument.is_output && same_name(argument.name.text, "eno");
 }
@@ -66,6 +77,7 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         }
         if (!parameter || !parameter->type) return {};
         if (!argument.value->type) continue;
+        if (!is_in_range(*argument.value, *parameter->type)) return {};
         const auto one = closeness(*parameter, *argument.value->type);
         const bool converts = call.place.dialect().vendor == Vendor::siemens &&
                               parameter->section == Section::input &&
@@ -81,7 +93,12 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
 
 }  // namespace
 
-bool means_standard(const Expression& call, const Routine& method) {
+bool means_function(Checking& c, const Expression& call, const Routine& method) {
+    const Token& name = call.operands[0]->token;
+    if (&call.place.dialect() == &iec) {  // where methods are called by THIS
+        const Routine* function = c.find_routine(name);
+        if (function && function->is_function() && !function->owner) return true;
+    }
     const StandardFunction* f = find_standard_function(method.pou->name.text);
     const int count = static_cast<int>(call.arguments.size());
     return f && count >= f->least && count <= f->most &&
@@ -105,6 +122,33 @@ Routine& overload_of(Checking& c, Expression& call, const NameMap<std::vector<Ro
         best = routine;
     }
     return *best;
+}
+
+/// In the namespaces that are seen there, the innermost first.
+static std::vector<Routine*> functions_named(Checking& c, const Token& name) {
+    std::vector<Routine*> found;
+    const Prefixes* here = is_prelude(name) ? nullptr : c.prefixes_at(name.place);
+    if (!here) return found;
+    for (const std::string_view path : here->paths) {
+        Routine* routine = find_in(c.users.routines, fmt::format("{}.{}", path, name.text));
+        if (routine && routine->is_function() && std::ranges::find(found, routine) == found.end())
+            found.push_back(routine);
+    }
+    return found;
+}
+
+Routine& function_called(Checking& c, Expression& call, Routine& first) {
+    Routine& nearest = overload_of(c, call, c.names_beside(first.pou->name).overloads, first);
+    const std::vector<Routine*> named = functions_named(c, call.operands[0]->token);
+    if (named.size() < 2) return nearest;
+    for (Argument& argument : call.arguments)
+        if (!is_of_no_parameter(argument)) check(c, argument.value);
+    if (closeness(call, nearest)) return nearest;
+    for (Routine* other : named) {
+        Routine& one = overload_of(c, call, c.users.overloads, *other);
+        if (closeness(call, one)) return one;
+    }
+    return nearest;
 }
 
 }  // namespace lineshaft::st

@@ -17,7 +17,7 @@ std::optional<const Type*> check_typed_function(Checking& c, Expression*& e) {
     const std::string_view written = e->operands[0]->token.text;
     const std::size_t end = std::min(written.rfind('_'), written.size() - 1);
     const std::string_view name = written.substr(0, end);
-    const Type* type = find_elementary(written.substr(end + 1));
+    const Type* type = in_dialect(find_elementary(written.substr(end + 1)), e->place);
     const StandardFunction* standard = find_standard_function(name);
     if (!type || !standard || standard->typing == Typing::statement) return {};
     Expression* call = make_call(c, *e, make_name(c, *e->operands[0], name), e->arguments);

@@ -13,6 +13,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/s5.hpp"
 #include "runtime/st/check/variants.hpp"
@@ -422,16 +423,32 @@ void check(Checking& c, Statement*& slot) {
 }
 
 /// `gAxis := gAxis;`, with which programs of B&R name what they only hand over.
-bool is_same_object(const Expression& target, const Expression& value) {
+static bool is_same_object(const Expression& target, const Expression& value) {
     return target.kind == E::name && value.kind == E::name && target.variable &&
            target.variable == value.variable;
+}
+
+/// An instance takes another one of its block; of one that derives from it what the block has.
+static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
+    const Type& type = *given->type;
+    if (same_type(block, type)) return is_place(*given) || given->kind == E::call;
+    const bool derives = type.kind == Kind::block && is_a(*type.routine, *block.routine);
+    return derives && become_base(c, given, block);
 }
 
 void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
+    const bool is_of_target = s->target->kind == E::deref;
     const Type* type = check(c, s->target);
+    if (type && type->is_open_array() && is_of_target)
+        return void(c.fail(code::cannot_be_assigned, s->place,
+                           "an array of any length is not assigned as a whole",
+                           "assign its elements one by one"));
+    const Variable* target = s->target->variable;
+    if (type && type->is_open_array() && target && !target->is_parameter())
+        return assign_open_array(c, s);
     if (s->op != Word::assign && type)
         s = make_assignment(
             c, s->place, s->target,
@@ -440,9 +457,7 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
         return;
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
-    const bool is_instance = is_place(*s->value) || s->value->kind == E::call;
-    if (type->kind == Kind::block && s->op == Word::assign && is_instance &&
-        same_type(*type, *s->value->type))
+    if (type->kind == Kind::block && s->op == Word::assign && is_given_whole(c, s->value, *type))
         return;
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));

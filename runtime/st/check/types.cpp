@@ -295,7 +295,13 @@ static const Type* begun_in_dialect(const Type* type, const Place& place) {
     return type->kind == Kind::date ? &date : &moment;
 }
 
+bool refers_to_open_array(const TypeText& text) {
+    return text.kind == TypeText::Kind::reference && text.name.word == Word::ref_to_ &&
+           text.element && is_open_array(*text.element);
+}
+
 const Type* resolve_parameter(Checking& c, const TypeText& text) {
+    if (refers_to_open_array(text)) return resolve_open_array(c, *text.element);
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
 

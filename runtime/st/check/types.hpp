@@ -11,6 +11,8 @@ constexpr Wide most_elements = 1 << 24;  ///< of an array
 const Type* resolve(Checking& c, const TypeText& text);
 /// The same of what is given to a call, which alone may be an ARRAY[*].
 const Type* resolve_parameter(Checking& c, const TypeText& text);
+/// `REF_TO ARRAY[*] OF T` of a variable, which resolve_parameter() takes: it has bounds as well.
+bool refers_to_open_array(const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
 /// WSTRING and WCHAR are STRING and CHAR in SCL; another type, or null, is itself.
 const Type* in_dialect(const Type* type, const Place& place);

@@ -217,6 +217,8 @@ std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 /// In a number of room: what is no character of the text is read as 0 and not written, but for one
 /// right behind its end.
 inline constexpr std::uint32_t of_s7 = std::uint32_t{1} << 30;
+/// In a number of room: a character right behind the end of the text is put there.
+inline constexpr std::uint32_t grows = std::uint32_t{1} << 29;
 
 /// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.
 std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,

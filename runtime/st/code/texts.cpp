@@ -81,7 +81,7 @@ static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t val
                           std::uint64_t room) {
     const bool is_wide = (room & of_units) != 0;
     const std::uint64_t at = static_cast<std::uint64_t>(place) - 1,
-                        length = length_of_text(text, is_wide), most = room & (of_s7 - 1);
+                        length = length_of_text(text, is_wide), most = room & (grows - 1);
     if (at > length || at >= most) return true;
     if (is_wide) return set_unit(text, at, value, most);
     set_byte(text + 8, at, value);
@@ -92,8 +92,11 @@ static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t val
 bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room) {
     if ((room & of_s7) != 0) return set_or_append(text, place, value, room);
     const auto at = static_cast<std::uint64_t>(place) - 1;
-    if ((room & of_units) != 0)
-        return at < count_units(text_at(text)) && set_unit(text, at, value, room & (of_units - 1));
+    const std::uint64_t most = room & (grows - 1);
+    const bool is_wide = (room & of_units) != 0;
+    if ((room & grows) != 0 && at == length_of_text(text, is_wide) && at < most)
+        return set_or_append(text, place, value, room);
+    if (is_wide) return at < count_units(text_at(text)) && set_unit(text, at, value, most);
     const bool is_there = at < word(text, 0);
     if (is_there) set_byte(text + 8, at, value);
     if (is_there && value == 0) set_word(text, 0, at);

@@ -19,18 +19,31 @@ void write_character(Writing& w, const Statement& s) {
     const Slot index = value(w, *s.target->arguments[0].value);
     const Dialect& dialect = s.target->place.dialect();
     Slot room = capacity_of(w, at, *text.type);
-    if (dialect.vendor == Vendor::siemens)
-        room = w.emit(Op::or_bits, none, room, w.constant_slot(meaning::of_s7));
+    const std::uint32_t rule = dialect.vendor == Vendor::siemens ? meaning::of_s7
+                               : &dialect == &iec                ? meaning::grows
+                                                                 : 0;
+    if (rule != 0) room = w.emit(Op::or_bits, none, room, w.constant_slot(rule));
     w.put(dialect.texts_are_bytes ? Op::set_text_byte : Op::set_character, from, place, index,
           room);
     if (at.packed) store_packed_text(w, at, place);
+}
+
+/// It stays what it is, whatever derives from its block is copied to it.
+void assign_instance(Writing& w, const Statement& s) {
+    const Location to = as_address(w, locate(w, *s.target));
+    const Location kind = behind(to, w.code.kind_slot());
+    const Slot kept = w.emit(Op::move, none, load(w, kind));
+    assign(w, to, *s.target->type, *s.value);
+    store(w, kind, kept);
 }
 
 void write_assignment(Writing& w, const Statement& s) {
     if (s.target->kind == Expression::Kind::bit)
         return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
     if (s.target->is_character()) return write_character(w, s);
-    assign(w, locate(w, *s.target), *s.target->type, *s.value);
+    const Type& type = *s.target->type;
+    if (type.kind == Kind::block && w.code.has_kinds) return assign_instance(w, s);
+    assign(w, locate(w, *s.target), type, *s.value);
 }
 
 void jump_unless(Writing& w, const Expression& condition, Jumps& to) {

@@ -132,6 +132,22 @@ static bool has_bit_of_word(std::string_view text) {
     return false;
 }
 
+/// A line begins with `DATA_BLOCK` or `ORGANIZATION_BLOCK`, which other languages do not have.
+static bool is_of_siemens(std::string_view text) {
+    for (const std::string_view word : {"DATA_BLOCK", "ORGANIZATION_BLOCK"}) {
+        for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+            const std::size_t end = std::min(at + word.size(), text.size());
+            const std::string_view rest = text.substr(end);
+            const std::size_t name = rest.find_first_not_of(" \t");
+            const bool begins_line = at == 0 || text[at - 1] == '\n';
+            if (begins_line && name != 0 && name != rest.npos && rest[name] != '\n' &&
+                rest[name] != '\r')
+                return true;
+        }
+    }
+    return false;
+}
+
 const Dialect& dialect_of(std::string_view path, std::string_view text) {
     struct Ending {
         std::string_view ending;
@@ -151,6 +167,7 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
     const Dialect& said = is_plain ? iec : it->dialect;
     if (&said == &iec && is_of_matiec(text)) return matiec;
     if (&said == &iec && is_of_codesys(text)) return codesys;
+    if (&said == &iec && is_of_siemens(text)) return scl;
     return &said == &codesys && has_bit_of_word(text) ? word_addressed : said;
 }
 

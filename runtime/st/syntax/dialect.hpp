@@ -66,11 +66,11 @@ struct Dialect {
 extern const Dialect iec, automation_studio, codesys, word_addressed, twincat, scl, matiec;
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
-/// `.prg` puts together are B&R's, `.EXP` and `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, all
-/// others SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name it may say
-/// otherwise, `.scl.txt`. A text in `.st` that has `RESOURCE x ON PLC`, as those tools write it, is
-/// MatIEC's, one with `{attribute '...'}` CODESYS'; one in `.EXP` or `.xml` that has a bit above 7,
-/// `%IX0.12`, is of a word-addressed device.
+/// `.prg` puts together are B&R's, `.EXP`, `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, others
+/// SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name it may say
+/// otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's, with `{attribute
+/// '...'}` CODESYS', with a line that begins with DATA_BLOCK or ORGANIZATION_BLOCK SCL; one in
+/// `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.
 const Dialect& dialect_of(std::string_view path, std::string_view text = {});
 
 /// It is read as a `.st` is.

@@ -18,6 +18,15 @@ constexpr Instead types_of_vendors[] = {
     {" pid_compact ", "write the controller as a FUNCTION_BLOCK"},
     {" program_alarm ", "write a BOOL output, and expect it"},
     {" mb_client mb_server ", "serve the machine: lineshaft serve --modbus"},
+    {" datalogcreate datalogopen datalogwrite datalogclose datalogclear datalogdelete "
+     "datalognewfile ",
+     "leave it out: 'lineshaft run --trace' keeps what the run did"},
+    {" recipeexport recipeimport ",
+     "leave it out: the controller has no files here; keep recipes in a DATA_BLOCK"},
+    {" tcon_ip_v4 tcon_ip_v4_sec tcon_ip_rfc tcon_param tcon_phys tcon_qdn tcon tdiscon tsend "
+     "trcv tsend_c trcv_c tusend turcv ",
+     "leave the connection out: nobody is at its other end here; a FUNCTION_BLOCK of this name "
+     "with its outputs stands for it"},
     {" counter ", "declare an instance of CTU, CTD or CTUD"},
     {" timer ", "declare an instance of TON, TOF or TP"}};
 
@@ -32,6 +41,21 @@ constexpr Instead functions_of_vendors[] = {
     {" topositioningaxisref tosynchronousaxisref tospeedaxisref asaxisref ",
      "declare the axis as VAR_IN_OUT of type TO_PositioningAxis: no number of a data block names "
      "one here"},
+    {" qry_cint set_cint can_tint set_tint srt_dint ",
+     "say the cycle of an OB in the program: tasks: {OB30: {cycle: 10 ms}}"},
+    {" read_dbl writ_dbl create_db delete_db ",
+     "copy with ':=': a data block has no load memory here"},
+    {" getblockname getsymbolname getsymbolpath getsymbolforreference ",
+     "give the name as a VAR_INPUT of type STRING"},
+    {" gen_usrmsg gen_diag get_diag ",
+     "leave it out: nobody reads messages of the controller here"},
+    {" led get_im_data devicestates modulestates d_act_dp geo2log log2geo io2mod rd_addr get_name "
+     "get_statioinfo ",
+     "leave it out: the controller has no hardware here"},
+    {" s_comp ", "compare the texts: a = b"},
+    {" word_to_block_db ", "name the data block: no number names one here"},
+    {" wr_loc_t set_timezone snc_rtcb ",
+     "leave it out: the clock is that of the run, which begins 1970-01-01"},
     {" wait ", "count the time with a TON"},
     {" stp ", "end the run with 'run: {until: ...}' in the program"},
     {" re_trigr ", "leave it out: 'maximum_cycle_time' says how long a scan may last"},

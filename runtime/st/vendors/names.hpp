@@ -41,7 +41,7 @@ constexpr std::string_view library_called(std::string_view name) {
     return name == "Siemens.Simatic.MotionControl.Native" ? siemens_motion : name;
 }
 
-/// Timers and counters of their controllers themselves; names of it are seen as those.
+/// Timers and counters of controllers themselves, filters, a clock; its names are seen as those.
 inline constexpr std::string_view siemens_step7 = "Siemens.Step7";
 
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
