@@ -31,7 +31,8 @@ void tell_missing_libraries(Checking& c) {
         fmt::format("{} that nobody declares may be of libraries that are not here: {}",
                     c.foreign.size() == 1 ? "a name" : fmt::format("{} names", c.foreign.size()),
                     fmt::join(libraries, ", ")),
-        fmt::format("give their sources, too; {}", fmt::join(names, ", ")));
+        fmt::format("give their sources, too: `sources:` takes several projects; {}",
+                    fmt::join(names, ", ")));
 }
 
 }  // namespace

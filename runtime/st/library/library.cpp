@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/fields.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -22,9 +23,14 @@ void add_routine(Library::Made& made, const Routine& routine, const CodeRoutine&
     write_fields(made, kind, routine);
 }
 
+/// No program names anything of it.
+bool is_for_pictures(std::string_view library) {
+    return lower(library).starts_with("system_visu") || same_name(library, "VisuSymbols");
+}
+
 /// Of those whose names are here without them, too. A library that is here in parts says so.
 bool is_here(const Catalog& standard, std::string_view library) {
-    if (is_vendor_library(library)) return true;
+    if (is_vendor_library(library) || is_for_pictures(library)) return true;
     const LibraryFile* file = find_called(standard.libraries(), library, &LibraryFile::library);
     return file && !file->text.starts_with("// In parts.");
 }

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "runtime/source/letters.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -70,13 +69,6 @@ NameSet names_of(const Catalog& catalog) {
         }
     }
     return names;
-}
-
-/// In one of TwinCAT's own forms.
-bool is_twincat(const Source& source) {
-    const std::string path = lower(source.file->path);
-    constexpr std::string_view endings[] = {".tcpou", ".tcdut", ".tcgvl", ".tcio", ".tctleo"};
-    return std::ranges::any_of(endings, [&](auto ending) { return path.ends_with(ending); });
 }
 
 LibraryNames::Index make_index(const Catalog& catalog) {
@@ -202,7 +194,7 @@ void LibraryNames::note(const Token& name) {
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
-    if (is_twincat(*name.place.source)) of_twincat_.insert(it->first);
+    if (&name.place.dialect() == &twincat) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
     const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
     if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);

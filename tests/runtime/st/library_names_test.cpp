@@ -142,6 +142,10 @@ TEST_CASE("what the catalogue has is a library's once that is taken", "[st][libr
     CHECK(compiled({file("a.st", declare + "o : ST_MoveOptions; " + call)}) == "p ");
     CHECK(compiled({file("a.TcPOU", declare + "o : BOOL; " + call)})
               .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
+    const SourceFile said{
+        .path = "a.st", .text = declare + "o : BOOL; " + call, .read_as = ".tcpou"};
+    CHECK(compiled({std::make_shared<const SourceFile>(said)})
+              .find("expected Tc2_MC2.ST_MoveOptions, found BOOL") != std::string::npos);
 }
 
 TEST_CASE("a file of TwinCAT's takes nothing of SoftMotion for a name", "[st][libraries]") {
@@ -163,12 +167,15 @@ TEST_CASE("names that nobody has may be of libraries that are not here", "[st][l
                              "END_PROGRAM\n");
     Diagnostics out;
     st::Options options;
-    options.references = {{"Tc2_Standard", {project, 1, 1}}, {"Tc3_JsonXml", {project, 2, 1}}};
+    options.references = {{"Tc2_Standard", {project, 1, 1}},
+                          {"system_visuinputs", {project, 1, 1}},
+                          {"Tc3_JsonXml", {project, 2, 1}}};
     CHECK_FALSE(st::compile({source}, standard_blocks(), out, options));
     const std::string told = out.render();
     CHECK(told.find("a.plcproj:2:1: error[L0927]: 2 names that nobody declares may be of libraries "
                     "that are not here: Tc3_JsonXml") != std::string::npos);
-    CHECK(told.find("FB_JsonReadWriteDataType (a.st:1), F_Foreign (a.st:2)") != std::string::npos);
+    CHECK(told.find("`sources:` takes several projects; FB_JsonReadWriteDataType (a.st:1), "
+                    "F_Foreign (a.st:2)") != std::string::npos);
     CHECK(told.find("a.st:2:44: error[L0905]") != std::string::npos);
     CHECK(out.count() == 2);
     Diagnostics apart;
