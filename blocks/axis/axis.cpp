@@ -131,7 +131,6 @@ std::span<const Field> Axis::fields() {
         local("followers", &A::followers, "", "axes that follow it"),
         local("commands", &A::commands, "", "that it has begun"),
         local("waiting", &A::queue, &JobList::first, "", "below 0: no command waits"),
-        local("superimposed", &A::added, &A::Running::place, "", "below 0: nothing is on top"),
         local("base_velocity", &A::base, &MotionState::velocity, "{unit}/s",
               "of the motion without what is on top"),
         local("goal", &A::goal, "{unit}", "of the move at work, without what is on top"),

@@ -106,10 +106,10 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
 
 /// StartSync: a slave may leave to meet its master at once, or for its cam.
 Progress Axis::begun() const {
-    using Stage = SyncMotion::Stage;
-    const bool ramps_in = sync.law == SyncMotion::Law::cammed && sync.stage == Stage::in_transition;
-    const bool leaves =
-        doing == Doing::following_axes && (sync.stage == Stage::approaching || ramps_in);
+    const bool ramps_in =
+        sync.law == SyncMotion::Law::cammed && sync.stage == SyncMotion::Stage::in_transition;
+    const bool leaves = doing == Doing::following_axes &&
+                        (sync.stage == SyncMotion::Stage::approaching || ramps_in);
     return leaves ? Progress::approaching : Progress::active;
 }
 

@@ -48,7 +48,7 @@ void build(const YamlText& source, YamlBuilder& builder, Diagnostics& out) {
 std::string_view foreign_form(std::string_view text) {
     if (text.starts_with("PK\x03\x04")) return "an archive";
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), text.size()));
-    return text.starts_with('<') ? "XML" : "";
+    return text.starts_with('<') && !text.starts_with("<<") ? "XML" : "";
 }
 
 /// `line.yaml` of `line` or `line.yml`, where that is there.

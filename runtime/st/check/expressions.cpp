@@ -31,8 +31,7 @@ const Type* check_kind(Checking& c, Expression*& e, const Type* expected) {
         case E::typed:
             return check_typed(c, e);
         case E::deref:
-            if (take_referred_array(c, e)) return e->type;
-            return check_target_of(c, *e);
+            return check_target_of(c, e);
         case E::list:
         case E::repeated:
             return c.fail(

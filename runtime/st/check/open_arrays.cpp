@@ -37,13 +37,6 @@ static Expression* without_ref(Expression* e) {
     return is_ref ? e->arguments[0].value : e;
 }
 
-bool take_referred_array(Checking& c, Expression*& e) {
-    const Type* type = check(c, e->operands[0]);
-    if (!type || !type->is_open_array()) return false;
-    e = e->operands[0];
-    return true;
-}
-
 void assign_open_array(Checking& c, Statement*& s) {
     Expression& target = *s->target;
     if (!target.variable || !check_target(c, target)) return;

@@ -17,9 +17,6 @@ Expression* bound_of(Checking& c, const Expression& array, bool is_lower, std::s
 /// element its constant.
 Expression* moved_in_open_array(Checking& c, const Expression& e);
 
-/// `r^` of `r : REF_TO ARRAY[*] OF T` is the array, as `r` itself. False: it is of another type.
-bool take_referred_array(Checking& c, Expression*& e);
-
 /// `r := REF(a);`, `r := other;`, `r := NULL;`: where its first element is, and its bounds.
 void assign_open_array(Checking& c, Statement*& s);
 

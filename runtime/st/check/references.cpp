@@ -269,14 +269,18 @@ void resolve_targets(Checking& c) {
     c.targets.clear();
 }
 
-const Type* check_target_of(Checking& c, Expression& e) {
-    const Type* type = check(c, e.operands[0]);
+const Type* check_target_of(Checking& c, Expression*& e) {
+    const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
+    if (type->is_open_array()) {
+        e = e->operands[0];
+        return type;
+    }
     if (!type->is_reference())
-        return c.fail(code::type_does_not_fit, e.place,
+        return c.fail(code::type_does_not_fit, e->place,
                       fmt::format("'^' does not go with {}", describe(*type)),
                       "it takes what a REF_TO or a POINTER TO refers to");
-    depend_on_target(c, type->element, e.place);
+    depend_on_target(c, type->element, e->place);
     return type->element;
 }
 

@@ -27,7 +27,7 @@ bool refer(Checking& c, Expression*& e, const Type& to);
 bool become_base(Checking& c, Expression*& e, const Type& base);
 
 /// `p^`
-const Type* check_target_of(Checking& c, Expression& e);
+const Type* check_target_of(Checking& c, Expression*& e);
 /// `e`, a REFERENCE TO, becomes what it refers to, whose type is given.
 const Type* take_target(Checking& c, Expression*& e);
 /// `p[i]`, which is `(p + i * SIZEOF(p^))^`.

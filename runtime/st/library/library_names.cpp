@@ -193,6 +193,8 @@ void LibraryNames::note(const Token& name) {
     if (it == index_.by_name.end()) return;
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
+    const auto is_mapp = [](const LibraryFile* f) { return is_of_mapp(f->library); };
+    if (is_of_mapp(reading_) && std::ranges::none_of(it->second, is_mapp)) return;  // a pin of its
     names_.insert(it->first);
     if (&name.place.dialect() == &twincat) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);

@@ -132,19 +132,14 @@ static bool has_bit_of_word(std::string_view text) {
     return false;
 }
 
-/// A line begins with `DATA_BLOCK` or `ORGANIZATION_BLOCK`, which other languages do not have.
+/// A line begins with `DATA_BLOCK "Data"` or `ORGANIZATION_BLOCK "Main"`.
 static bool is_of_siemens(std::string_view text) {
-    for (const std::string_view word : {"DATA_BLOCK", "ORGANIZATION_BLOCK"}) {
+    for (const std::string_view word : {"DATA_BLOCK", "ORGANIZATION_BLOCK"})
         for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
-            const std::size_t end = std::min(at + word.size(), text.size());
-            const std::string_view rest = text.substr(end);
-            const std::size_t name = rest.find_first_not_of(" \t");
+            const std::size_t name = text.find_first_not_of(" \t", at + word.size());
             const bool begins_line = at == 0 || text[at - 1] == '\n';
-            if (begins_line && name != 0 && name != rest.npos && rest[name] != '\n' &&
-                rest[name] != '\r')
-                return true;
+            if (begins_line && name != text.npos && text[name] == '"') return true;
         }
-    }
     return false;
 }
 
