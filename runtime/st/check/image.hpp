@@ -10,7 +10,6 @@ bool is_left_open(const Token& at, Variable& variable);
 /// `x AT %QW4 : INT`: the variable is a view of the process image. One at `%I*` is none.
 void locate_in_image(Checking& c, Variable& variable, const Declaration& declared);
 
-
 /// `%QW4` in an expression.
 const Type* check_direct(Checking& c, Expression& e);
 

@@ -16,8 +16,8 @@ namespace lineshaft::st {
 ///   - for a name of it that the sources use and nobody else has: they declare no type, unit,
 ///     global variable or value of an enumeration of that name, nor has the catalogue it;
 ///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
-///     stands in a source in TwinCAT's dialect, or in a file of Automation Studio's, and the library
-///     is one of its, or if the sources name pins of it that the catalogue's block has not;
+///     stands in a source in TwinCAT's dialect, or in a file of Automation Studio's, and the
+///     library is one of its, or if the sources name pins of it that the catalogue's block has not;
 ///   - for `EXTENDS TON` and its like in CODESYS and TwinCAT: `extended_TON`;
 ///   - for `Util.BLINK`, where `Util` is the library, whatever else has that name;
 ///   - for USING with its library, and for a name before which a library that is not open stands:

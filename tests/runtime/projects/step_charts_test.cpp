@@ -96,8 +96,8 @@ Read read(const std::string& xml) {
 
 TEST_CASE("elements of a chart of steps lead to those below") {
     const Read made =
-        read(unit(first("Begin") + transition("a &lt;&gt; b;") + step("Work", action("c", "L T#1s")) +
-                  transition("NOT a") + jump("Begin")));
+        read(unit(first("Begin") + transition("a &lt;&gt; b;") +
+                  step("Work", action("c", "L T#1s")) + transition("NOT a") + jump("Begin")));
     CHECK(made.text ==
           "\nINITIAL_STEP Begin:\nEND_STEP\nSTEP Work:\n    c(L, T#1s);\nEND_STEP\n"
           "TRANSITION FROM Begin TO Work := a <> b;\nEND_TRANSITION\n"
