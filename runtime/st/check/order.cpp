@@ -22,6 +22,7 @@ struct Ordering {
     Checking& c;
     std::vector<const Called*> way = {};  ///< of calls, from a routine that nothing calls here on
     std::vector<Round> rounds = {};       ///< one for each routine that is come back to
+    std::unordered_set<const Routine*> made = {};  ///< blocks whose parts are in order
     bool was_loosened = false;
 };
 
@@ -61,12 +62,23 @@ void close_way(Ordering& o, const Called& last) {
     o.rounds.push_back({&last, hops_of(round), std::ranges::all_of(round, may_recur)});
 }
 
+void visit(Ordering& o, const Called& by);
+
+/// What a block is made of comes before its methods: they are laid out behind it.
+void visit_parts(Ordering& o, const Routine& block) {
+    if (o.made.contains(&block)) return;
+    for (const Called& part : block.calls)
+        if (!part.is_call && !part.through_reference) visit(o, part);
+    o.made.insert(&block);
+}
+
 void visit(Ordering& o, const Called& by) {
     Routine& routine = *by.routine;
     if (routine.state == Routine::State::done) return;
     if (routine.state == Routine::State::visiting) return close_way(o, by);
     routine.state = Routine::State::visiting;
     o.way.push_back(&by);
+    if (routine.owner) visit_parts(o, *routine.owner);
     for (const Called& called : routine.calls)
         if (!is_found(called)) visit(o, called);
     o.way.pop_back();
@@ -77,7 +89,7 @@ void visit(Ordering& o, const Called& by) {
 /// False: a call was loosened, and it is to be done again.
 bool order(Ordering& o) {
     o.was_loosened = false;
-    o.rounds.clear(), o.c.checked.order.clear();
+    o.rounds.clear(), o.made.clear(), o.c.checked.order.clear();
     for (Routine& routine : o.c.checked.routines) routine.state = Routine::State::fresh;
     for (Routine& routine : o.c.checked.routines)
         if (!routine.is_prototype()) visit(o, {&routine});
