@@ -9,7 +9,7 @@ namespace lineshaft::projects {
 
 namespace {
 
-constexpr std::size_t step_bytes = 4096;
+constexpr std::size_t step_bytes = 512;
 
 bool begins_character(char byte) {
     return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80;

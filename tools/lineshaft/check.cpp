@@ -54,15 +54,6 @@ std::size_t check_folder(const std::string& folder, const LoadOptions& options, 
     return files;
 }
 
-/// Whether a folder has more than Structured Text.
-bool has_programs(const std::string& path) {
-    std::error_code error;
-    if (!std::filesystem::is_directory(path, error)) return false;
-    const auto tests = find_tests(path, {});
-    return std::ranges::any_of(
-        tests, [](const TestFile& test) { return !projects::is_source(test.path); });
-}
-
 /// Those that are no tests together.
 void check_sources(const std::vector<std::string>& paths, const LoadOptions& options,
                    Diagnostics& out) {
@@ -88,15 +79,15 @@ Exit execute(const CheckCommand& command) {
     std::vector<std::string> sources, checked;
     for (const std::string& path : command.files) {
         checked.push_back(path);
-        const bool is_other = !has_programs(path) && is_project(path);
-        if (is_other) {
+        const bool is_ours = has_forms(path);
+        if (!is_ours && is_project(path)) {
             Diagnostics found;
             const std::string page = check_project(path, options, found);
             if (!command.common.json && !found.empty()) fmt::print("{}", page);
             Once(out).add(found);
             continue;
         }
-        if (std::error_code error; has_programs(path)) {
+        if (std::error_code error; is_ours) {
             const std::size_t files = check_folder(path, options, out);
             checked.back() += fmt::format(": {} {}", files, files == 1 ? "file" : "files");
         } else if (projects::is_source(path) || std::filesystem::is_directory(path, error))

@@ -72,15 +72,20 @@ bool is_of_project(const fs::path& path) {
     return projects::is_source(path) && !is_structured_text(path);
 }
 
-bool can_be_tested(const fs::path& path) {
-    const bool yaml = is_yaml(path);
-    if (!yaml && !is_structured_text(path)) return false;
+/// A program, a study or a fit; or whoever runs it tells why it cannot be read.
+bool is_form(const fs::path& path) {
+    if (!is_yaml(path)) return false;
     Diagnostics unread;
     const auto file = read_source(path.string(), unread);
-    const bool is_unreadable = !file && unread.list().front().code == code::file_cannot_be_read;
-    if (!file) return is_unreadable || !yaml;  // whoever runs it tells why
-    return yaml ? is_study(*file) || is_fit(*file) || is_program(*file)
-                : has_tests(file) || st::calls_suites(file);
+    if (!file) return unread.list().front().code == code::file_cannot_be_read;
+    return is_study(*file) || is_fit(*file) || is_program(*file);
+}
+
+bool can_be_tested(const fs::path& path) {
+    if (!is_structured_text(path)) return is_form(path);
+    Diagnostics unread;
+    const auto file = read_source(path.string(), unread);
+    return !file || has_tests(file) || st::calls_suites(file);
 }
 
 void add_sources(st::SourcePool& pool, const std::string& path, bool below) {
@@ -425,6 +430,11 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
                              .is_named = false});
     std::ranges::sort(tests, {}, &TestFile::path);
     return tests;
+}
+
+bool has_forms(const std::string& folder) {
+    std::error_code error;
+    return fs::is_directory(folder, error) && !files_of(folder, true, is_form).empty();
 }
 
 bool has_tests(const std::shared_ptr<const SourceFile>& file) {

@@ -36,6 +36,9 @@ struct TestOptions {
 /// folder all below it, of a file its folder, and the one around that if it is `tests`.
 std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources);
 
+/// Whether programs, studies or fits stand below a folder.
+bool has_forms(const std::string& folder);
+
 /// Whether a file has TESTs, or fixtures of SIMATIC AX.
 bool has_tests(const std::shared_ptr<const SourceFile>& file);
 
