@@ -270,7 +270,7 @@ void Axis::begin_phasing(const Context& context, Job& job) {
     const double from = is_new ? sync.shift.position : phased.from;
     double to = request.position;
     if (request.command == Command::phasing_relative) to += from;
-    if (request.holds != 0 && d.valid()) to = stopping_position(sync.shift, d);
+    if (request.halts != 0 && d.valid()) to = stopping_position(sync.shift, d);
     const PlanResult planned = d.valid() ? sync.shifting.begin(sync.shift, to, 0, d, {scan_time})
                                          : PlanResult::limit_not_positive;
     if (planned != PlanResult::ok) return tell(job, Progress::failed, sync_error(planned));

@@ -175,8 +175,8 @@ struct Request {
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
-    std::int64_t holds =
-        0;  ///< Execute of MC_Stop, Enable of MC_MotionInPosition; MC_Phasing halts
+    std::int64_t holds = 0;         ///< Execute of MC_Stop, Enable of MC_MotionInPosition
+    std::int64_t halts = 0;         ///< of MC_Phasing: where the shift can come to rest
     std::int64_t relative = 0;      ///< of MC_SetPosition
     std::int64_t homes = 0;         ///< of MC_SetPosition: the position is known then
     std::int64_t jogs = 0;          ///< of MC_MoveVelocity: MC_MoveJog has it

@@ -89,7 +89,7 @@ std::vector<Field> phasing_table() {
         {output("AbsolutePhaseShift", &Phasing::shift, "{Master}", "shift of the master now"),
          output("CoveredPhaseShift", &Phasing::covered_shift, "{Master}",
                 "that the command has added so far")});
-    table.push_back(local("Halts", &CommandBlock::pins, &Request::holds, "",
+    table.push_back(local("Halts", &CommandBlock::pins, &Request::halts, "",
                           "1: the shift ends where it then stands"));
     return table;
 }

@@ -66,7 +66,7 @@ Operand load(const Seat& seat, const std::string& unit) {
 class Reckoning {
   public:
     Reckoning(st::Tree& tree, const Frame& frame, const st::Checked& checked)
-        : tree_(tree), frame_(frame), checked_(checked), c_{tree, nothing_, st::evaluate, wrong_} {
+        : frame_(frame), checked_(checked), c_{tree, nothing_, st::evaluate, wrong_} {
         for (const st::Type& type : checked.types) {
             if (!type.has_values() || type.name.empty()) continue;
             c_.users.types.emplace(type.name, st::NamedType{&declared_, &type});
@@ -315,7 +315,6 @@ class Reckoning {
         return fmt::format("'{}' is not known here", e.place.text());
     }
 
-    st::Tree& tree_;
     const Frame& frame_;
     const st::Checked& checked_;
     Catalog nothing_;

@@ -4,7 +4,6 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
-#include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
 
@@ -56,7 +55,7 @@ Given given_open_array(Checking& c, Expression* value, const Type& type) {
     return {.type = number_of(c, element),
             .element = number_of(c, element),
             .size = static_cast<std::int64_t>(bytes_of(element)),
-            .place = make_call(c, "ADR", first),
+            .place = make_call(c, "__SYSTEM.ADR", first),
             .count = make_converted(c, count, dint_type),
             .is_bool = element.kind == Kind::boolean};
 }
@@ -81,7 +80,7 @@ Given given_as_variant(Checking& c, Expression* value) {
     return {.type = number_of(c, *type),
             .element = is_array ? number_of(c, type->innermost()) : 0,
             .size = is_array && count > 0 ? bytes / count : bytes,
-            .place = make_call(c, "ADR", value),
+            .place = make_call(c, "__SYSTEM.ADR", value),
             .count = dint_of(c, *value, count),
             .is_bool = (is_array ? type->innermost() : *type).kind == Kind::boolean};
 }
