@@ -1482,6 +1482,19 @@ def check_suites_of_programs():
     assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
 
 
+def check_vendored_tcunit():
+    """TcUnit's own sources stand beside the project that is tested by it: the library of that name runs the suites."""
+    twincat("vendored/TcUnit", "POU", "FB_TestSuite", "FUNCTION_BLOCK FB_TestSuite\nVAR own : FB_OfFramework; END_VAR")
+    twincat("vendored/TcUnit", "POU", "TEST", "FUNCTION TEST : BOOL\nVAR_INPUT name : STRING; END_VAR")
+    plcproj("vendored/TcUnit/TcUnit.plcproj", "TcUnit", ["FB_TestSuite.TcPOU", "TEST.TcPOU"])
+    twincat("vendored/own", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite",
+            "TEST('adds'); AssertEquals_INT(4, 2 + 2, 'sum'); TEST_FINISHED();")
+    twincat("vendored/own", "POU", "MAIN", "PROGRAM MAIN\nVAR suite : Suite; END_VAR", "TcUnit.RUN();")
+    plcproj("vendored/own/Own.plcproj", "Own", ["Suite.TcPOU", "MAIN.TcPOU"], [("TcUnit", "TcUnit")])
+    assert "1 of 1 passed" in run("test", "vendored")
+    assert "1 of 1 passed" in run("test", "vendored/own/Own.plcproj", "--source", "vendored/TcUnit")
+
+
 def check_suites_of_lists():
     """A list of globals that no program names has suites, too; what they use may be a block with VAR_GENERIC of another file."""
     twincat("listed", "POU", "Stack", "FUNCTION_BLOCK Stack\nVAR_GENERIC CONSTANT length : INT := 5; END_VAR\nVAR_OUTPUT size : INT; END_VAR\n"
@@ -1629,6 +1642,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_called_programs()
     check_axes_of_suites()
     check_suites_of_programs()
+    check_vendored_tcunit()
     check_suites_of_lists()
     check_axes_that_are_referred_to()
     check_foreign_names()

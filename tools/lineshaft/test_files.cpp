@@ -101,6 +101,7 @@ std::shared_ptr<const st::SourcePool> sources_of_project(const std::string& path
     Diagnostics unread;
     for (const WholeProject& project : read_projects(path, folders, unread))
         for (const auto& source : project.project.sources) pool->add(source);
+    pool->leave_out_tcunit();
     return pool;
 }
 
@@ -125,6 +126,7 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
         if (name == "tests" || name == "test")
             add_sources(*pool, (folder / "..").lexically_normal().string(), false);
     }
+    pool->leave_out_tcunit();
     return pool;
 }
 

@@ -152,6 +152,23 @@ void SourcePool::replace(const std::shared_ptr<const SourceFile>& file) {
     add(file);
 }
 
+void SourcePool::leave_out_tcunit() {
+    std::set<std::filesystem::path> folders;
+    for (const Entry& entry : entries_) {
+        if (!entry.types.contains("fb_testsuite")) continue;
+        const auto within = std::filesystem::absolute(entry.file->path);
+        for (auto folder = within.parent_path(); folder != folder.root_path();
+             folder = folder.parent_path())
+            if (std::filesystem::exists(folder / "TcUnit.plcproj")) folders.insert(folder);
+    }
+    std::erase_if(entries_, [&](const Entry& entry) {
+        const auto path = std::filesystem::absolute(entry.file->path);
+        return std::ranges::any_of(folders, [&](const std::filesystem::path& folder) {
+            return std::ranges::mismatch(folder, path).in1 == folder.end();
+        });
+    });
+}
+
 std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& name,
                                                           const Entry& user,
                                                           const std::string& to) const {

@@ -21,6 +21,10 @@ class SourcePool {
     /// What stands in a file now, in place of what stood there.
     void replace(const std::shared_ptr<const SourceFile>& file);
 
+    /// Those of TcUnit's own project, where it stands beside what is tested by it: the library of
+    /// that name is meant.
+    void leave_out_tcunit();
+
     /// What `tests` needs: `x.st` of the same folder for `test_x.st` and `x_test.st`, and then
     /// every file that declares a name which the tests or a file found so far use and do not
     /// declare. Of several that declare it the nearest, by path, one for each namespace that has
