@@ -218,8 +218,7 @@ const Type* resolve_subrange(Checking& c, const TypeText& text) {
         return c.fail(code::value_out_of_range, text.place, "the subrange has no value",
                       "the first bound is the smaller one");
     Type& type = c.checked.types.emplace_back(*base);
-    type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
-                            static_cast<std::int64_t>(*upper));
+    type.name = fmt::format("{}({}..{})", base->name, *lower, *upper);
     type.is_subrange = true;
     type.is_unchecked = text.place.dialect().is_loose;
     type.base = base;

@@ -283,7 +283,7 @@ Slot value_before(Writing& w, const Expression& e, const Expression& later) {
 Slot within(Writing& w, const Type& type, Slot slot) {
     const auto least = static_cast<std::int64_t>(smallest(type));
     const auto count = static_cast<std::uint64_t>(largest(type) - smallest(type)) + 1;
-    w.put(Op::within, 0, slot, w.table({least, count, 1}));
+    if (count > 0) w.put(Op::within, 0, slot, w.table({least, count, 1}));
     return slot;
 }
 

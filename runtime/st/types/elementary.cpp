@@ -249,13 +249,17 @@ bool same_type(const Type& a, const Type& b) {
 }
 
 Wide smallest(const Type& type) {
-    if (type.is_subrange) return type.lower;
+    if (type.is_subrange) return whole_in(type, static_cast<std::uint64_t>(type.lower));
     return type.is_signed ? -(Wide{1} << (type.bits - 1)) : 0;
 }
 
 Wide largest(const Type& type) {
-    if (type.is_subrange) return type.upper;
+    if (type.is_subrange) return whole_in(type, static_cast<std::uint64_t>(type.upper));
     return (Wide{1} << (type.is_signed ? type.bits - 1 : type.bits)) - 1;
+}
+
+Wide whole_in(const Type& type, std::uint64_t slot) {
+    return type.is_unsigned_64() ? Wide{slot} : static_cast<std::int64_t>(slot);
 }
 
 Wide wrapped(const Type& type, Wide value) {

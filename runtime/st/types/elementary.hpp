@@ -55,6 +55,9 @@ bool same_type(const Type& a, const Type& b);
 Wide smallest(const Type& type);
 Wide largest(const Type& type);
 
+/// What a slot has of an integer, a bit string, a time.
+Wide whole_in(const Type& type, std::uint64_t slot);
+
 /// `value` in the type's width: what is beyond it wraps.
 Wide wrapped(const Type& type, Wide value);
 

@@ -57,7 +57,8 @@ struct Type {
     int bits = 64;              ///< of integer, bits, real
     std::string name = {};      ///< as messages show it
     std::uint32_t slots = 1;
-    std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
+    std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values, as a
+                                         ///< slot has them
     bool is_subrange = false;
     bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
