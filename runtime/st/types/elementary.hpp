@@ -37,7 +37,7 @@ const Type* find_codesys_type(std::string_view name);
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &ltime_type, &date_type, &clock_type, &moment_type, &any_integer_type,
     &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type, &wide_string_type,
-    &open_wide_string_type, &wide_char_type;
+    &open_wide_string_type, &wide_char_type, &unsigned_ltime_type;
 
 /// The integer or bit string of that width.
 const Type& integer_type(int bits, bool is_signed);

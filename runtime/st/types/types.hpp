@@ -113,7 +113,8 @@ struct Type {
     bool is_pointer() const { return is_reference() && referring == Referring::pointer; }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
     bool is_unsigned_64() const {
-        return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
+        return (is_bits() || kind == Kind::integer || kind == Kind::time) && !is_signed &&
+               bits == 64;
     }
     /// Of a text: what an instruction has as its room, and the bytes that its slots have room for.
     std::uint32_t room() const { return is_wide ? length | of_units : length; }
