@@ -56,6 +56,9 @@ except lineshaft.ProgramError as error:
 study = lineshaft.study(source / "programs/paper/jerk_line_table1.yaml", jobs=2)
 assert study.ok and study.rows[0]["unit"] == "" and {"set", "signal", "paper", "ours"} <= study.rows[0].keys()
 
+unsigned = lineshaft.run(source / "tests/cases/unsigned_numbers_of_64_bits/program.yaml")
+assert unsigned["first.most"] == int(unsigned.trace["first.most"][-1]) == 2**64 - 1, unsigned["first.most"]
+
 without = lineshaft.run(source / "tests/cases/expectations_of_all_kinds/program.yaml")
 assert without.ok and without.trace is None
 

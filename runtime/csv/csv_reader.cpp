@@ -117,7 +117,7 @@ void append(std::vector<double>& values, double value) {
 }
 
 /// Whether a column of whole numbers may hold the value.
-bool fits(const CsvColumn& column, std::int64_t value) {
+bool fits(const CsvColumn& column, Wide value) {
     if (column.type == Type::integer) return true;
     const auto values = static_cast<std::int64_t>(column.names.size());
     return value >= 0 && value < (column.type == Type::boolean ? 2 : values);
@@ -142,7 +142,7 @@ class CsvReader {
     void blank_rows(std::size_t next);
     void row();
     const char* cell(CsvColumn& column, const char* at, const char* end);
-    void take(CsvColumn& column, std::int64_t value);
+    void take(CsvColumn& column, Wide value, double rounded);
     void odd_cell(CsvColumn& column, std::string_view cell);
     void end_of_rows();
     void drop_last_row();
@@ -384,7 +384,7 @@ const char* CsvReader::cell(CsvColumn& column, const char* at, const char* end) 
         std::int64_t value = 0;
         const auto [stop, error] = std::from_chars(at, end, value);
         if (error == std::errc{} && (stop == end || *stop == separator_) && fits(column, value)) {
-            take(column, value);
+            take(column, value, static_cast<double>(value));
             return stop;
         }
     }
@@ -393,8 +393,7 @@ const char* CsvReader::cell(CsvColumn& column, const char* at, const char* end) 
     return stop;
 }
 
-void CsvReader::take(CsvColumn& column, std::int64_t value) {
-    const auto rounded = static_cast<double>(value);
+void CsvReader::take(CsvColumn& column, Wide value, double rounded) {
     if (std::abs(rounded) >= exact_up_to) column.large.push_back({column.values.size(), value});
     append(column.values, rounded);
 }
@@ -405,13 +404,16 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
     if (separator_ == ';' && column.type == Type::real) std::ranges::replace(text, ',', '.');
     const char* wrong = nullptr;
     double real = missing;
-    std::int64_t whole = 0;
     if (!text.empty() && column.type == Type::real) {
         wrong = read_cell(text, real);
         if (!wrong && !std::isfinite(real)) wrong = "is not a number";
     } else if (!text.empty()) {
-        wrong = read_cell(text, whole);
-        if (!wrong && fits(column, whole)) return take(column, whole);
+        std::int64_t with_sign = 0;
+        std::uint64_t without = 0;
+        wrong = read_cell(text, with_sign);
+        if (wrong && !read_cell(text, without)) wrong = nullptr;
+        const Wide whole = without > 0 ? Wide{without} : Wide{with_sign};
+        if (!wrong && fits(column, whole)) return take(column, whole, static_cast<double>(whole));
         if (!wrong) wrong = "is not one of its values";
     }
     const auto named = std::ranges::find(column.names, text);
@@ -464,7 +466,7 @@ void CsvReader::fail(const char* code, std::string_view part, std::string messag
 
 }  // namespace
 
-std::int64_t CsvColumn::integer(std::size_t row) const {
+Wide CsvColumn::integer(std::size_t row) const {
     const auto it = std::ranges::lower_bound(large, row, {}, &Large::row);
     if (it != large.end() && it->row == row) return it->value;
     return is_missing(row) ? 0 : static_cast<std::int64_t>(values[row]);

@@ -24,13 +24,13 @@ struct CsvColumn {
 
     struct Large {
         std::size_t row;
-        std::int64_t value;
+        Wide value;
     };
     std::vector<Large> large;  ///< integers from 2^53 on, which `values` rounds; by row
 
     bool is_missing(std::size_t row) const { return values[row] != values[row]; }
-    /// Exact; 0 where the cell is empty. Of type integer only.
-    std::int64_t integer(std::size_t row) const;
+    /// Exact, of 64 bits with or without a sign; 0 where the cell is empty. Of type integer only.
+    Wide integer(std::size_t row) const;
 };
 
 /// The columns that were asked for, in the order of the file.

@@ -13,6 +13,7 @@
 #include "runtime/st/library/compiled.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
+#include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
 #include "runtime/st/vendors/names.hpp"
 
@@ -56,8 +57,7 @@ Operand load(const Seat& seat, const std::string& unit) {
     else if (type.is_real())
         found.value.real = read<double>(seat.at);
     else if (type.is_scalar())
-        found.value.integer = type.is_unsigned_64() ? Wide{read<std::uint64_t>(seat.at)}
-                                                    : Wide{read<std::int64_t>(seat.at)};
+        found.value.integer = whole_in(type, read<std::uint64_t>(seat.at));
     return found;
 }
 
@@ -196,7 +196,8 @@ class Reckoning {
             type = &st::bool_type;
             found.value.integer = std::get<bool>(value);
         } else {
-            found.value.integer = std::get<std::int64_t>(value);
+            if (named.type == Is::unsigned_integer) type = &st::ulint_type;
+            found.value.integer = *whole(value);
         }
         if (named.type == Is::enumeration)
             for (const st::Type& each : checked_.types)

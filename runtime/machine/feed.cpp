@@ -20,9 +20,7 @@ void deliver(const Row& row) {
 }
 
 double scaled(const ScaledCopy& wire) {
-    const double value = wire.widens ? static_cast<double>(read<std::int64_t>(wire.source))
-                                     : read<double>(wire.source);
-    return value * wire.factor / wire.divisor;
+    return as_real(load(wire.source_type, wire.source)) * wire.factor / wire.divisor;
 }
 
 void feed_copies(const Call& call) {

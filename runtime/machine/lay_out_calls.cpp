@@ -51,8 +51,9 @@ struct CallWires {
 };
 
 void add(const Wire& wire, Type type, Copy copy, CallWires& to) {
-    if (wire.scaled)
-        to.scaled.push_back({copy.source, copy.target, wire.factor, wire.divisor, wire.widens});
+    const Type from = wire.widens.value_or(Type::real);
+    if (wire.scaled || from == Type::unsigned_integer)
+        to.scaled.push_back({copy.source, copy.target, wire.factor, wire.divisor, from});
     else if (wire.widens)
         to.widened.push_back(copy);
     else

@@ -26,13 +26,14 @@ struct Row {
     Transfer transfer = Transfer::word;
 };
 
-/// A real from another unit of the input's dimension: times factor, over divisor.
+/// A real from another unit of the input's dimension, or from an unsigned integer: times factor,
+/// over divisor.
 struct ScaledCopy {
     const std::byte* source = nullptr;
     std::byte* target = nullptr;
     double factor = 1;
     double divisor = 1;
-    bool widens = false;  ///< the source is an integer
+    Type source_type = Type::real;
 };
 
 /// What feeds the inputs of a task's blocks, one call after the other.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -23,24 +24,34 @@ std::optional<Value> read_name(const Reader& read, const Node& node, const Field
     return {};
 }
 
+void out_of_range(const Reader& read, const Node& node, const Field& field, const Unit& unit) {
+    using Limits = std::numeric_limits<std::int64_t>;
+    std::string limits = describe_limits(field, unit.text);
+    if (limits.empty()) limits = fmt::format("from {} to {}", Limits::min(), Limits::max());
+    read.fail(code::number_out_of_range, node,
+              fmt::format("'{}' is out of range for '{}'", node.text, field.name),
+              "it must be " + limits);
+}
+
 std::optional<Value> read_integer(const Reader& read, const Node& node, const Field& field,
                                   const Unit& unit) {
+    std::optional<Wide> number;
     if (unit.text.empty()) {
-        const auto value = read.integer(node);
-        return value ? std::optional<Value>(*value) : std::nullopt;
+        number = read.whole(node);
+    } else if (unit.text == "ns") {
+        number = read.time(node);
+    } else if (const auto value = read.real(node, unit)) {
+        if (*value == std::trunc(*value) && std::abs(*value) < 9e15)
+            number = static_cast<std::int64_t>(*value);
+        else
+            read.fail(code::not_a_whole_number, node,
+                      fmt::format("'{}' is not a whole number of {} for '{}'", node.text, unit.text,
+                                  field.name));
     }
-    if (unit.text == "ns") {
-        const auto value = read.time(node);
-        return value ? std::optional<Value>(*value) : std::nullopt;
-    }
-    const auto value = read.real(node, unit);
-    if (!value) return {};
-    if (*value == std::trunc(*value) && std::abs(*value) < 9e15)
-        return Value(static_cast<std::int64_t>(*value));
-    read.fail(
-        code::not_a_whole_number, node,
-        fmt::format("'{}' is not a whole number of {} for '{}'", node.text, unit.text, field.name));
-    return {};
+    if (!number) return {};
+    const auto value = whole_value(*number, field.type);
+    if (!value) out_of_range(read, node, field, unit);
+    return value;
 }
 
 }  // namespace
@@ -70,14 +81,12 @@ std::optional<Value> read_literal(const Reader& read, const Node& node, const Fi
         if (const auto b = read.boolean(node)) value = *b;
         return value;
     }
-    if (field.type == Type::integer)
+    if (is_integer(field.type))
         value = read_integer(read, node, field, unit);
     else if (const auto number = read.real(node, unit))
         value = *number;
     if (!value || field.admits(*value)) return value;
-    read.fail(code::number_out_of_range, node,
-              fmt::format("'{}' is out of range for '{}'", node.text, field.name),
-              "it must be " + describe_limits(field, unit.text));
+    out_of_range(read, node, field, unit);
     return {};
 }
 

@@ -1,7 +1,9 @@
 #include "runtime/model/value.hpp"
 
 #include <cmath>
-#include <optional>
+#include <limits>
+
+#include <fmt/format.h>
 
 #include "runtime/source/units.hpp"
 
@@ -9,21 +11,15 @@ namespace lineshaft {
 
 namespace {
 
-std::partial_ordering compare(std::int64_t a, double b) {
-    constexpr double beyond = 0x1p63;
+/// a is within 64 bits, with or without a sign.
+std::partial_ordering compare(Wide a, double b) {
+    constexpr double beyond = 0x1p64;
     if (std::isnan(b)) return std::partial_ordering::unordered;
     if (b >= beyond) return std::partial_ordering::less;
     if (b < -beyond) return std::partial_ordering::greater;
     const double whole = std::trunc(b);
-    const auto same = a <=> static_cast<std::int64_t>(whole);
+    const auto same = a <=> static_cast<Wide>(whole);
     return same != 0 ? std::partial_ordering(same) : whole <=> b;
-}
-
-/// Empty for a real.
-std::optional<std::int64_t> as_integer(const Value& value) {
-    if (const auto* b = std::get_if<bool>(&value)) return *b ? 1 : 0;
-    if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
-    return {};
 }
 
 }  // namespace
@@ -34,6 +30,8 @@ Value load(Type type, const std::byte* slot) {
             return read<bool>(slot);
         case Type::real:
             return read<double>(slot);
+        case Type::unsigned_integer:
+            return read<std::uint64_t>(slot);
         default:
             return read<std::int64_t>(slot);
     }
@@ -43,10 +41,23 @@ void store(Type, std::byte* slot, const Value& value) {
     std::visit([slot](auto v) { std::memcpy(slot, &v, sizeof v); }, value);
 }
 
+std::optional<Wide> whole(const Value& value) {
+    if (std::holds_alternative<double>(value)) return {};
+    return std::visit([](auto v) { return static_cast<Wide>(v); }, value);
+}
+
+std::optional<Value> whole_value(Wide number, Type type) {
+    const auto as = [number]<class T>(T) -> std::optional<Value> {
+        using Limits = std::numeric_limits<T>;
+        if (number < Wide{Limits::min()} || number > Wide{Limits::max()}) return {};
+        return static_cast<T>(number);
+    };
+    return type == Type::unsigned_integer ? as(std::uint64_t{}) : as(std::int64_t{});
+}
+
 std::string format(const Value& value) {
-    if (const auto* b = std::get_if<bool>(&value)) return *b ? "1" : "0";
-    if (const auto* i = std::get_if<std::int64_t>(&value)) return std::to_string(*i);
-    return format_number(std::get<double>(value));
+    if (const auto* real = std::get_if<double>(&value)) return format_number(*real);
+    return fmt::format("{}", *whole(value));
 }
 
 std::string describe(const Value& value, Type type, std::span<const std::string_view> names,
@@ -66,7 +77,7 @@ double as_real(const Value& value) {
 }
 
 std::partial_ordering compare(const Value& a, const Value& b) {
-    const auto x = as_integer(a), y = as_integer(b);
+    const auto x = whole(a), y = whole(b);
     if (x && y) return *x <=> *y;
     if (x) return compare(*x, std::get<double>(b));
     if (y) return 0 <=> compare(*y, std::get<double>(a));

@@ -4,25 +4,35 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 
+#include "runtime/source/wide.hpp"
+
 namespace lineshaft {
 
-/// The four kinds of data a signal carries. An enumeration is stored as its index, 64 bits wide.
-enum class Type : std::uint8_t { boolean, integer, real, enumeration };
+/// The kinds of data a signal carries. An enumeration is stored as its index, 64 bits wide. An
+/// unsigned integer has the values from 2^63 on that no other integer has (ULINT, LWORD); those who
+/// look from outside take both for integers.
+enum class Type : std::uint8_t { boolean, integer, real, enumeration, unsigned_integer };
 
 /// Enumerations count as integers here; their names stand in the field.
-using Value = std::variant<bool, std::int64_t, double>;
+using Value = std::variant<bool, std::int64_t, double, std::uint64_t>;
+
+/// With a sign or without.
+constexpr bool is_integer(Type type) {
+    return type == Type::integer || type == Type::unsigned_integer;
+}
 
 constexpr std::size_t size_of(Type type) {
     return type == Type::boolean ? 1 : 8;
 }
 
 constexpr std::string_view name_of(Type type) {
-    constexpr std::string_view names[] = {"boolean", "integer", "real", "enumeration"};
+    constexpr std::string_view names[] = {"boolean", "integer", "real", "enumeration", "integer"};
     return names[static_cast<std::size_t>(type)];
 }
 
@@ -39,6 +49,12 @@ Value load(Type type, const std::byte* slot);
 
 /// Writes `value`, which must be of `type`, to `slot`.
 void store(Type type, std::byte* slot, const Value& value);
+
+/// The integer, which counts for a boolean and an enumeration, too; empty for a real.
+std::optional<Wide> whole(const Value& value);
+
+/// As a value of the type, which is one of integers; empty where that has none such.
+std::optional<Value> whole_value(Wide number, Type type);
 
 /// As a trace has it: boolean 0 or 1, enumeration its number, shortest round-trip real.
 std::string format(const Value& value);

@@ -30,7 +30,7 @@ struct Wire {
     Port from, to;
     Late late = Late::published;
     bool negated = false;
-    bool widens = false;  ///< an integer to a real
+    std::optional<Type> widens = {};  ///< an integer of that type to a real
     bool scaled = false;
     double factor = 1, divisor = 1;
 };

@@ -23,8 +23,9 @@ std::optional<Signal> read_input(const Reader& read, const Node& value, Value& i
     const auto quantity = is_identifier(value.text) ? std::nullopt : read.quantity(value);
     if (!quantity) return {};
     if (quantity->is_integer && !quantity->has_unit) {
-        signal.type = Type::integer;
-        initial = quantity->integer;
+        const auto with_sign = whole_value(quantity->integer, Type::integer);
+        signal.type = with_sign ? Type::integer : Type::unsigned_integer;
+        initial = *whole_value(quantity->integer, signal.type);
     } else {
         signal.type = Type::real;
         signal.unit = quantity->unit.text;

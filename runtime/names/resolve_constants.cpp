@@ -45,7 +45,7 @@ std::optional<Value> interval_of(const Resolving& to, const Assignment& assignme
                      fmt::format("'{}' is an event task: it has no interval", task.name));
         return 0.0;
     }
-    if (field.type == Type::integer) return task.every;
+    if (is_integer(field.type)) return whole_value(task.every, field.type);
     return convert(seconds(task.every), second, unit);
 }
 

@@ -105,16 +105,17 @@ bool check_source(const Resolving& to, const Assignment& wire, const Signal& sou
 
 bool check_type(const Resolving& to, const Assignment& wire, const Signal& source) {
     const auto& [number, field, value, text] = wire;
+    const bool is_real = field->type == Type::real;
     if (text->negated && source.type != Type::boolean) {
         to.read.fail(
             code::not_of_no_boolean, *value,
             fmt::format("NOT is for booleans, '{}' is {}", source.name, name_of(source.type)));
         return false;
     }
-    const bool widens = source.type == Type::integer && field->type == Type::real;
-    const bool narrows = source.type == Type::real && field->type == Type::integer;
-    if ((source.type == field->type || widens) && std::ranges::equal(source.names, field->names))
-        return true;
+    const bool narrows = source.type == Type::real && is_integer(field->type);
+    const bool fits = source.type == field->type ||
+                      (is_integer(source.type) && (is_integer(field->type) || is_real));
+    if (fits && std::ranges::equal(source.names, field->names)) return true;
     to.read.fail(
         code::wire_between_types, *value,
         fmt::format("'{}' is {}, '{}' takes {}", source.name, kind(source.type, source.names),
@@ -125,7 +126,7 @@ bool check_type(const Resolving& to, const Assignment& wire, const Signal& sourc
 
 bool check_unit(const Resolving& to, const Assignment& wire, const Signal& source,
                 const Unit& given, const Unit& wanted) {
-    const bool whole = wire.field->type == Type::integer && given.text != wanted.text;
+    const bool whole = is_integer(wire.field->type) && given.text != wanted.text;
     if (given.same_dimension(wanted) && !whole) return true;
     to.read.fail(code::wire_between_dimensions, *wire.value,
                  fmt::format("'{}' is in {}, '{}' takes {}", source.name,
@@ -152,6 +153,7 @@ void connect(Resolving& to, const Assignment& wire) {
     if (!check_unit(to, wire, *source, given, wanted) ||
         !check_order(to, wire, source->port.instance))
         return;
+    const bool widens = is_integer(source->type) && field->type == Type::real;
     const bool same_task =
         source->port.instance >= 0 && source->task == to.net.instance(number).task;
     const bool is_delay = text->previous && source->port.instance < number;
@@ -162,7 +164,7 @@ void connect(Resolving& to, const Assignment& wire) {
                                     : same_task      ? Late::now
                                                      : Late::published,
                             .negated = text->negated,
-                            .widens = source->type == Type::integer && field->type == Type::real,
+                            .widens = widens ? std::optional(source->type) : std::nullopt,
                             .scaled = given.text != wanted.text,
                             .factor = given.numerator * wanted.denominator,
                             .divisor = given.denominator * wanted.numerator});

@@ -32,15 +32,15 @@ bool may_be_written(ModbusTable table) {
 }
 
 std::string_view usual_type(Type type) {
-    return type == Type::real ? "real32" : type == Type::integer ? "int32" : "uint16";
+    return type == Type::real ? "real32" : is_integer(type) ? "int32" : "uint16";
 }
 
 /// Of an address of the process image a type of its size.
 std::string_view usual_type(const Target& target) {
     const auto address = read_address(target.signal.name, AddressCount::words);
-    if (!address || target.signal.type != Type::integer) return usual_type(target.signal.type);
+    if (!address || !is_integer(target.signal.type)) return usual_type(target.signal.type);
     const bool has_sign = target.field.minimum < 0;
-    if (address->bits == 64) return "int64";
+    if (address->bits == 64) return has_sign ? "int64" : "uint64";
     if (address->bits == 32) return has_sign ? "int32" : "uint32";
     return has_sign ? "int16" : "uint16";
 }
@@ -49,7 +49,7 @@ std::string_view usual_type(const Target& target) {
 std::optional<double> scale_of(const Connecting& to, const RegisterPlan& plan,
                                const Signal& signal) {
     if (!plan.scale) return 1;
-    const bool numeric = signal.type == Type::real || signal.type == Type::integer;
+    const bool numeric = signal.type == Type::real || is_integer(signal.type);
     const auto scale = numeric ? to.read.real(*plan.scale, to.net.unit(signal.unit)) : std::nullopt;
     if (scale && *scale != 0) return scale;
     if (!numeric || scale)
@@ -87,7 +87,7 @@ void set_type(const Connecting& to, const RegisterPlan& plan, const Target& targ
     mapped.count = type->registers;
     set_scale(mapped, scale_of(to, plan, signal).value_or(1));
     constexpr int of_64_bits = 4;
-    if (signal.type == Type::integer && mapped.count == of_64_bits && mapped.divisor == 0)
+    if (is_integer(signal.type) && mapped.count == of_64_bits && mapped.divisor == 0)
         to.read.fail(code::register_does_not_fit, *plan.scale,
                      fmt::format("whole numbers of 64 bits would lose digits by the scale {}",
                                  plan.scale->text),

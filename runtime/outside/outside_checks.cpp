@@ -95,7 +95,6 @@ std::int64_t begin_of(const Net& net, const StimulusPlan& plan) {
     if (!plan.task) return plan.at;
     const auto task = std::ranges::find(net.tasks, plan.task->text, &TaskSettings::name);
     if (task == net.tasks.end() || task->on_event) return 0;
-    __extension__ using Wide = __int128;
     const Wide time = static_cast<Wide>(plan.at) * task->every + task->offset - task->jitter;
     return static_cast<std::int64_t>(std::min<Wide>(time, never));
 }

@@ -19,32 +19,36 @@ constexpr std::size_t most_memory = std::size_t{256} << 20;  // bytes, of all re
 /// cell.
 bool fits(const CsvColumn& column, bool is_typed, const Field& input) {
     if (!is_typed) return true;
-    const bool widens = column.type == Type::integer && input.type == Type::real;
-    return (column.type == input.type || widens) && std::ranges::equal(column.names, input.names);
+    const bool fits = column.type == input.type ||
+                      (column.type == Type::integer &&
+                       (input.type == Type::real || input.type == Type::unsigned_integer));
+    return fits && std::ranges::equal(column.names, input.names);
 }
 
-std::optional<Value> as_whole(double value) {
+std::optional<Value> as_whole(double value, Type type) {
     if (value != std::trunc(value) || std::abs(value) >= 9e15) return {};
-    return static_cast<std::int64_t>(value);
+    return whole_value(static_cast<std::int64_t>(value), type);
 }
 
 /// A cell as the value of an input; empty where it is none of its type.
 std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field& input,
                           const Unit& from, const Unit& to) {
     const bool same_unit = from.text == to.text;
-    if (input.type == Type::integer && column.type == Type::integer && same_unit)
-        return column.integer(row);
+    if (is_integer(input.type) && column.type == Type::integer && same_unit)
+        return whole_value(column.integer(row), input.type);
     const double value = column.values[row];
     const auto among = [&](std::size_t count) {
         return value >= 0 && value < static_cast<double>(count);
     };
     switch (input.type) {
         case Type::boolean:
-            return among(2) && as_whole(value) ? std::optional<Value>(value == 1) : std::nullopt;
+            return among(2) && as_whole(value, input.type) ? std::optional<Value>(value == 1)
+                                                           : std::nullopt;
         case Type::enumeration:
-            return among(input.names.size()) ? as_whole(value) : std::nullopt;
+            return among(input.names.size()) ? as_whole(value, input.type) : std::nullopt;
         case Type::integer:
-            return as_whole(same_unit ? value : convert(value, from, to));
+        case Type::unsigned_integer:
+            return as_whole(same_unit ? value : convert(value, from, to), input.type);
         case Type::real:
             break;
     }

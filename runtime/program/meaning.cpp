@@ -16,7 +16,7 @@ std::string measured(const Quantity& quantity) {
     constexpr double exact = 0x1p53;
     if (quantity.unit.text == "%") return format_number(quantity.number) + " %";
     if (quantity.is_integer && !quantity.has_unit && std::abs(quantity.number) >= exact)
-        return std::to_string(quantity.integer);
+        return fmt::format("{}", quantity.integer);
     Unit base;
     base.exponents = quantity.unit.exponents;
     return fmt::format("{} {}", format_number(convert(quantity.number, quantity.unit, base)),

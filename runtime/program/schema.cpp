@@ -89,7 +89,7 @@ std::vector<std::string> possible_units(const BlockType& type, const std::string
 }
 
 Json bare_number(const Field& field) {
-    Json out = of_type(field.type == Type::integer ? "integer" : "number");
+    Json out = of_type(is_integer(field.type) ? "integer" : "number");
     if (std::isfinite(field.minimum))
         out[field.minimum_excluded ? "exclusiveMinimum" : "minimum"] = field.minimum;
     if (std::isfinite(field.maximum))

@@ -52,13 +52,19 @@ bool is_intact(const std::string& text) {
            text.substr(place, no_check.size()) == check_of(text, place);
 }
 
+/// Empty for no integer.
+std::optional<Value> integer_of(const Json& json, Type type) {
+    if (!json.is_number_integer()) return {};
+    return whole_value(json.is_number_unsigned() ? Wide{json.get<std::uint64_t>()}
+                                                 : Wide{json.get<std::int64_t>()},
+                       type);
+}
+
 std::optional<Value> value_of(const Json& json, Type type) {
-    constexpr auto least = std::numeric_limits<std::int64_t>::min();
-    constexpr auto most = std::numeric_limits<std::int64_t>::max();
     if (type == Type::boolean && json.is_boolean()) return json.get<bool>();
     if (type == Type::real && json.is_number()) return json.get<double>();
     if (type == Type::boolean || type == Type::real) return {};
-    return integer_at({{"value", json}}, "value", least, most);
+    return integer_of(json, type);
 }
 
 /// Among an enumeration's, and within the limits of the field.
@@ -67,7 +73,7 @@ bool is_admitted(const Value& value, const Signal& signal, const Machine& machin
         const auto number = std::get<std::int64_t>(value);
         return number >= 0 && number < std::ssize(signal.names);
     }
-    if (signal.port.instance < 0 || signal.type != Type::integer) return true;
+    if (signal.port.instance < 0 || !is_integer(signal.type)) return true;
     const BlockPlace& block = machine.blocks[static_cast<std::size_t>(signal.port.instance)];
     return block.type->fields[static_cast<std::size_t>(signal.port.field)].admits(value);
 }
@@ -122,6 +128,7 @@ Json json_of(const RetainedVariable& kept) {
         case st::Type::Kind::union_:
             break;
         default:
+            if (kept.type->is_unsigned_64()) return static_cast<std::uint64_t>(number);
             return number;
     }
     return {{"bytes", hexadecimal({kept.live, kept.live + kept.size})}};
@@ -149,9 +156,12 @@ Bytes bytes_of(const Json& json, const RetainedVariable& kept) {
             std::memcpy(bytes.data() + 8, text.data(), text.size());
             break;
         }
-        default:
-            if (!json.is_number_integer()) return {};
-            put(json.get<std::int64_t>());
+        default: {
+            const Type type = kept.type->is_unsigned_64() ? Type::unsigned_integer : Type::integer;
+            const auto value = integer_of(json, type);
+            if (!value) return {};
+            store(type, bytes.data(), *value);
+        }
     }
     return st::is_value(*kept.type, bytes.data()) ? bytes : Bytes();
 }

@@ -12,6 +12,7 @@ nlohmann::ordered_json to_json(const Signal& signal, const Value& value) {
     if (const auto* b = std::get_if<bool>(&value)) return *b;
     if (signal.type == Type::enumeration) return signal.describe(value);
     if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
+    if (const auto* i = std::get_if<std::uint64_t>(&value)) return *i;
     const double real = std::get<double>(value);
     return json_number(real);
 }

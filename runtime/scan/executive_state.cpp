@@ -35,7 +35,7 @@ void put_value(StateWriter& out, Type type, const Value& value) {
 }
 
 void get_value(StateReader& in, Type& type, Value& value) {
-    constexpr auto last = static_cast<std::uint8_t>(Type::enumeration);
+    constexpr auto last = static_cast<std::uint8_t>(Type::unsigned_integer);
     std::uint8_t number = 0;
     std::array<std::byte, 8> bytes{};
     in.get(number, 0, last);

@@ -14,16 +14,16 @@ namespace lineshaft {
 namespace {
 
 /// value + sign * slack; of a whole number exact, and at most as far as whole numbers go.
-Value moved(const Value& value, const Value& slack, int sign) {
+Value moved(const Signal& signal, const Value& value, const Value& slack, int sign) {
     constexpr double most = 0x1p63;
-    const auto* whole = std::get_if<std::int64_t>(&value);
+    const auto number = whole(value);
     const double size = as_real(slack);
-    if (!whole || size >= most) return as_real(value) + sign * size;
-    const auto* exact = std::get_if<std::int64_t>(&slack);
-    const std::int64_t way = sign * (exact ? *exact : static_cast<std::int64_t>(size));
-    std::int64_t sum = 0;
-    if (!__builtin_add_overflow(*whole, way, &sum)) return sum;
+    if (!number || size >= most) return as_real(value) + sign * size;
+    const Wide way = whole(slack).value_or(static_cast<std::int64_t>(size));
+    if (const auto sum = whole_value(*number + sign * way, signal.type)) return *sum;
     using Limits = std::numeric_limits<std::int64_t>;
+    if (signal.type == Type::unsigned_integer)
+        return sign > 0 ? std::numeric_limits<std::uint64_t>::max() : std::uint64_t{0};
     return sign > 0 ? Limits::max() : Limits::min();
 }
 
@@ -36,10 +36,10 @@ std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, 
                                  kind(signal.type, signal.names)));
         return {};
     }
-    const bool time = signal.type == Type::integer && signal.unit == "ns" && !is_share(node);
+    const bool time = is_integer(signal.type) && signal.unit == "ns" && !is_share(node);
     const auto given = parse_quantity(node.text);
     const auto* quantity = std::get_if<Quantity>(&given);
-    const bool whole = signal.type == Type::integer && signal.unit.empty() && quantity &&
+    const bool whole = is_integer(signal.type) && signal.unit.empty() && quantity &&
                        quantity->is_integer && !quantity->has_unit;
     std::optional<Value> value;
     if (whole || time)
@@ -78,8 +78,8 @@ void read_value(const Connecting& to, const ExpectPlan& plan, const Signal& targ
     e.low = e.high = read_bound(to, target, *plan.equals).value_or(0.0);
     const auto slack = plan.within ? read_tolerance(to, target, *plan.within, e.low) : std::nullopt;
     if (slack) {
-        e.high = moved(e.low, *slack, 1);
-        e.low = moved(e.low, *slack, -1);
+        e.high = moved(target, e.low, *slack, 1);
+        e.low = moved(target, e.low, *slack, -1);
     }
     e.wanted = plan.equals->text;
     if (plan.within) e.wanted += " within " + plan.within->text;

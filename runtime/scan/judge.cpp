@@ -15,6 +15,7 @@ namespace {
 
 nlohmann::ordered_json number_json(const Value& value) {
     if (const auto* i = std::get_if<std::int64_t>(&value)) return *i;
+    if (const auto* i = std::get_if<std::uint64_t>(&value)) return *i;
     return as_real(value);
 }
 

@@ -9,9 +9,6 @@ namespace lineshaft {
 
 namespace {
 
-/// Holds products of two whole numbers.
-__extension__ using Wide = __int128;
-
 template <class T>
 std::uint64_t bits_of(T value) {
     if constexpr (std::is_same_v<T, float>)
@@ -36,8 +33,8 @@ T nearest_of(double value) {
 
 /// Likewise of value / scale; half is away from zero.
 template <class T>
-T nearest_of(std::int64_t value, const MappedSignal& signal) {
-    const Wide product = Wide{value} * signal.divisor, by = signal.multiplier;
+T nearest_of(Wide value, const MappedSignal& signal) {
+    const Wide product = value * signal.divisor, by = signal.multiplier;
     const Wide left = product % by, half = (by < 0 ? -by : by) / 2 + (by % 2 != 0);
     const bool is_up = (left < 0 ? -left : left) >= half && left != 0;
     const Wide quotient = product / by + (is_up ? ((product < 0) == (by < 0) ? 1 : -1) : 0);
@@ -46,14 +43,11 @@ T nearest_of(std::int64_t value, const MappedSignal& signal) {
     return static_cast<T>(quotient);
 }
 
-/// number * scale, if that is a whole number of 64 bits.
+/// number * scale, if that is a value of the signal.
 std::optional<Value> scaled(Wide number, const MappedSignal& signal) {
     const Wide product = number * signal.multiplier;
     if (product % signal.divisor != 0) return {};
-    const Wide value = product / signal.divisor;
-    using Limits = std::numeric_limits<std::int64_t>;
-    if (value < Limits::min() || value > Limits::max()) return {};
-    return static_cast<std::int64_t>(value);
+    return whole_value(product / signal.divisor, signal.signal.type);
 }
 
 /// Calls `with` with a zero of the type.
@@ -94,17 +88,17 @@ std::optional<Value> value_of(const MappedSignal& mapped, double number) {
     if (signal.type == Type::real) return number;
     if (signal.type == Type::boolean)
         return number == 0 || number == 1 ? std::optional<Value>(number == 1) : std::nullopt;
-    const double limit =
-        signal.type == Type::enumeration ? static_cast<double>(signal.names.size()) : 0x1p63;
-    const double least = signal.type == Type::enumeration ? 0 : -0x1p63;
+    const bool is_named = signal.type == Type::enumeration;
+    const double limit = is_named ? static_cast<double>(signal.names.size()) : 0x1p64;
+    const double least = is_named ? 0 : -0x1p63;
     if (number != std::trunc(number) || number < least || number >= limit) return {};
-    return static_cast<std::int64_t>(number);
+    return whole_value(static_cast<Wide>(number), signal.type);
 }
 
 }  // namespace
 
 void to_registers(const MappedSignal& signal, const Value& value, std::span<std::uint16_t> to) {
-    const auto* integer = std::get_if<std::int64_t>(&value);
+    const auto integer = is_integer(signal.signal.type) ? whole(value) : std::nullopt;
     const std::uint64_t bits = with_type(signal.type, [&](auto zero) {
         using T = decltype(zero);
         if constexpr (std::numeric_limits<T>::is_integer)
@@ -130,8 +124,7 @@ std::optional<Value> from_registers(const MappedSignal& signal,
             zero = std::bit_cast<double>(bits);
         } else {
             zero = static_cast<T>(bits);
-            if (signal.signal.type == Type::integer && signal.divisor != 0)
-                return scaled(zero, signal);
+            if (is_integer(signal.signal.type) && signal.divisor != 0) return scaled(zero, signal);
         }
         return value_of(signal, static_cast<double>(zero) * signal.scale);
     });

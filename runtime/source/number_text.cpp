@@ -115,6 +115,10 @@ char* write_integer(char* to, std::int64_t value) {
     return std::to_chars(to, to + longest_number, value).ptr;
 }
 
+char* write_unsigned(char* to, std::uint64_t value) {
+    return std::to_chars(to, to + longest_number, value).ptr;
+}
+
 char* write_real(char* to, double value) {
     if (is_small_integer(value)) return write_integer(to, static_cast<std::int64_t>(value));
     if (!std::isfinite(value)) return to;

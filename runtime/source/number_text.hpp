@@ -10,6 +10,7 @@ namespace lineshaft {
 constexpr std::size_t longest_number = 34;
 
 char* write_integer(char* to, std::int64_t value);
+char* write_unsigned(char* to, std::uint64_t value);
 
 /// The shortest decimal number that reads back as the same double; with an exponent below 1e-4 and
 /// from 1e16 on. Nothing for what is not finite.

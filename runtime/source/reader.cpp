@@ -208,16 +208,30 @@ std::optional<Quantity> Reader::quantity(const Node& node, std::string expected)
     return {};
 }
 
-std::optional<std::int64_t> Reader::integer(const Node& node, std::string help) const {
+std::optional<Wide> Reader::whole(const Node& node, std::string help) const {
     const auto q = quantity(node, "expected a whole number");
     if (!q) return {};
     if (q->is_integer && !q->has_unit) return q->integer;
+    if (!q->has_unit && node.text.find_first_of(".eE") == std::string::npos) {
+        fail(code::number_out_of_range, node,
+             fmt::format("'{}' is beyond a 64-bit number's range", node.text));
+        return {};
+    }
     if (!q->has_unit)
         help = "write it without point and exponent";
     else if (help.empty())
         help = "expected a whole number without a unit";
     fail(code::not_a_whole_number, node, fmt::format("'{}' is not a whole number", node.text),
          std::move(help));
+    return {};
+}
+
+std::optional<std::int64_t> Reader::integer(const Node& node, std::string help) const {
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    const auto number = whole(node, std::move(help));
+    if (!number || *number <= most) return number;
+    fail(code::number_out_of_range, node,
+         fmt::format("'{}' is above {}, the greatest integer that has a sign", node.text, most));
     return {};
 }
 

@@ -31,7 +31,9 @@ class Reader {
     bool identifier(const Node& node, std::string_view what) const;
 
     std::optional<bool> boolean(const Node& node) const;
-    /// `help` is for a number with a unit.
+    /// Of 64 bits, with or without a sign. `help` is for a number with a unit.
+    std::optional<Wide> whole(const Node& node, std::string help = {}) const;
+    /// Likewise, of those with a sign.
     std::optional<std::int64_t> integer(const Node& node, std::string help = {}) const;
     /// `expected` is what is wanted instead of something that is no number, for the message.
     std::optional<Quantity> quantity(const Node& node, std::string expected = {}) const;

@@ -17,8 +17,6 @@
 namespace lineshaft {
 namespace {
 
-__extension__ using Wide = __int128;
-
 constexpr double pi = std::numbers::pi;
 constexpr std::size_t longest_unit = 64;
 constexpr Wide most_nanoseconds = 9'200'000'000'000'000'000;
@@ -113,7 +111,7 @@ Ratio ratio_of(const Unit& from, const Unit& to) {
 /// A finite double as the shortest decimal text that reads back as it: digits * 10^exponent.
 struct Decimal {
     bool negative = false;
-    std::int64_t digits = 0;
+    Wide digits = 0;
     int exponent = 0;
 };
 
@@ -217,8 +215,8 @@ Number based_number(std::string_view text, std::size_t base_length) {
     number.length = base_length + 1 + length;
     number.out_of_range = read.ec != std::errc();
     number.quantity.number = static_cast<double>(value);
-    number.quantity.is_integer = value <= std::numeric_limits<std::int64_t>::max();
-    if (number.quantity.is_integer) number.quantity.integer = static_cast<std::int64_t>(value);
+    number.quantity.is_integer = true;
+    number.quantity.integer = value;
     return number;
 }
 
@@ -255,7 +253,9 @@ Number number_at_beginning(std::string_view text) {
     Quantity& quantity = number.quantity;
     number.out_of_range = std::from_chars(written.data(), last, quantity.number).ec != std::errc();
     if (point || exponent > 0) return number;
-    quantity.is_integer = std::from_chars(written.data(), last, quantity.integer).ec == std::errc();
+    const auto integer = whole_number(written);
+    quantity.is_integer = integer.has_value();
+    quantity.integer = integer.value_or(0);
     return number;
 }
 
@@ -331,6 +331,17 @@ const std::vector<std::string>& unit_names() {
         return all;
     }();
     return names;
+}
+
+std::optional<Wide> whole_number(std::string_view text) {
+    const char* const last = text.data() + text.size();
+    std::int64_t with_sign = 0;
+    const auto read = std::from_chars(text.data(), last, with_sign);
+    if (read.ptr != last) return {};
+    if (read.ec == std::errc()) return with_sign;
+    std::uint64_t without = 0;
+    if (std::from_chars(text.data(), last, without).ec != std::errc()) return {};
+    return without;
 }
 
 std::optional<std::int64_t> to_nanoseconds(const Quantity& quantity) {

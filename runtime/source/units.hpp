@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/source/wide.hpp"
+
 namespace lineshaft {
 
 /// A unit of measure: `mm`, `rad/s`, `mm/s^3`, `pulses/cm`, `kHz`, `%`, or none (empty text).
@@ -46,8 +48,9 @@ struct Quantity {
     double number = 0;
     Unit unit;
     bool has_unit = false;
-    bool is_integer = false;   ///< written without point or exponent and within 64 bits
-    std::int64_t integer = 0;  ///< exact value when is_integer
+    bool is_integer = false;  ///< written without point or exponent and within 64 bits, with or
+                              ///< without a sign
+    Wide integer = 0;         ///< exact value when is_integer
 };
 
 enum class QuantityError {
@@ -61,6 +64,9 @@ enum class QuantityError {
 /// single underscores between digits as there. Infinite and NaN are no numbers. Spaces between
 /// number and unit are optional (`2ms`).
 std::variant<Quantity, QuantityError> parse_quantity(std::string_view text);
+
+/// The whole text as a decimal integer of 64 bits, with or without a sign: -2^63 to 2^64 - 1.
+std::optional<Wide> whole_number(std::string_view text);
 
 /// Every unit name that `Unit::parse` knows, each once, for messages.
 const std::vector<std::string>& unit_names();

@@ -20,9 +20,8 @@ std::int64_t ordinal(double value) {
     return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
 }
 
-double distance(std::int64_t a, std::int64_t b) {
-    const auto x = static_cast<std::uint64_t>(a), y = static_cast<std::uint64_t>(b);
-    return static_cast<double>(a > b ? x - y : y - x);
+double distance(Wide a, Wide b) {
+    return static_cast<double>(a > b ? a - b : b - a);
 }
 
 bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {

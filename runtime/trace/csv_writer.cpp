@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t written_at_once = 65536;
 
 char* append(char* end, Type type, std::uint64_t bits) {
-    return type == Type::real ? write_real(end, std::bit_cast<double>(bits))
-                              : write_integer(end, static_cast<std::int64_t>(bits));
+    if (type == Type::real) return write_real(end, std::bit_cast<double>(bits));
+    return type == Type::unsigned_integer ? write_unsigned(end, bits)
+                                          : write_integer(end, static_cast<std::int64_t>(bits));
 }
 
 }  // namespace

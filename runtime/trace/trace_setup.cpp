@@ -20,7 +20,7 @@ TraceTrigger connect_trigger(const Connecting& to, const TriggerPlan& plan) {
     if (!watched) return trigger;
     trigger.signal = to.machine.placed(*watched);
     const bool of_edge = plan.kind == rising || plan.kind == falling;
-    const bool is_number = watched->type == Type::real || watched->type == Type::integer;
+    const bool is_number = watched->type == Type::real || is_integer(watched->type);
     if (of_edge ? watched->type != Type::boolean : !is_number && plan.kind != equals)
         to.read.fail(code::wire_between_types, plan.signal,
                      fmt::format("{} takes a {}, '{}' is {}", of_edge ? "an edge" : "a bound",

@@ -14,8 +14,6 @@ namespace lineshaft::test {
 
 namespace {
 
-__extension__ using Wide = __int128;
-
 enum class Kind {
     boolean,
     integer,

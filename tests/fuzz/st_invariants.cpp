@@ -78,7 +78,7 @@ class Blocks {
                 store(field.type, block + field.offset, whole > 0);
             else if (field.type == Type::real)
                 store(field.type, block + field.offset, static_cast<double>(whole) / 8);
-            else if (field.type == Type::integer)
+            else if (is_integer(field.type))
                 store(field.type, block + field.offset,
                       whole < 0 && field.minimum >= 0 ? -whole : whole);
         }

@@ -55,7 +55,7 @@ Tolerances read_tolerances(const std::vector<std::string>& texts, const CsvTable
 
 std::string cell(const CsvColumn& column, std::size_t row) {
     if (column.is_missing(row)) return "";
-    if (column.type == Type::integer) return std::to_string(column.integer(row));
+    if (column.type == Type::integer) return fmt::format("{}", column.integer(row));
     return format_number(column.values[row]);
 }
 

@@ -167,7 +167,8 @@ def _column(described, cells):
     if "values" in described:
         return _array([described["values"][int(cell)] for cell in cells], str)
     if kind == "integer":
-        return _array([int(cell) for cell in cells], "int64")
+        whole = [int(cell) for cell in cells]
+        return _array(whole, "uint64" if max(whole, default=0) >= 2**63 else "int64")
     return _array([float(cell) for cell in cells], float)
 
 

@@ -74,6 +74,7 @@ const Type& make_enumeration(Checking& c, const BlockType& kind, const Field& fi
 const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
     if (field.type == lineshaft::Type::boolean) return &bool_type;
     if (field.type == lineshaft::Type::real) return &lreal_type;
+    if (field.type == lineshaft::Type::unsigned_integer) return &ulint_type;
     if (field.type == lineshaft::Type::enumeration) return &make_enumeration(c, *named.kind, field);
     const BlockType* referred = c.catalog.find(field.refers);
     if (referred && !referred->handle.empty()) return standard_type(c, referred->handle);

@@ -414,7 +414,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return true;
     if (to.is_subrange && from.is_scalar() &&
         (widens(from, to) || is_same_pattern(from, to.plain()))) {
-        if (is_constant(*e) && (e->constant.integer < to.lower || e->constant.integer > to.upper))
+        if (is_constant(*e) &&
+            (e->constant.integer < smallest(to) || e->constant.integer > largest(to)))
             return c.fail(code::value_out_of_range, e->place,
                           fmt::format("{} is out of range for {}", to_string(e->constant.integer),
                                       describe(to)));

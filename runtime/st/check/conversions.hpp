@@ -42,6 +42,8 @@ void take_width(Checking& c, Expression*& e, const Type* expected);
 
 /// A bit string where a number is due.
 void become_number(Checking& c, Expression*& e);
+/// MatIEC calls a function of C, whose arguments and result have no more bits than their type.
+void keep_width(Checking& c, Expression*& e);
 
 /// A whole number or a bit string becomes a LINT.
 void become_lint(Checking& c, Expression*& e);

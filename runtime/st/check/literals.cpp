@@ -93,7 +93,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a time", e.place.text()),
                       "write T#1h2m3.5s, with d, h, m, s, ms, us and ns in this order");
-    e.constant.integer = wrapped(lint_type, *value);  // CODESYS reckons its LTIME without a sign
+    e.constant.integer = wrapped(is_long ? long_time_type(e.place) : ltime_type, *value);
     if (!dialect.times_count_ms) return &time_type;
     const Wide kept = is_long ? *value : in_whole_ms(*value, dialect);
     if (dialect.vendor == Vendor::siemens && !is_long && kept != *value)
@@ -102,7 +102,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
                       "that is whole ms from T#-24d20h31m23s648ms to T#24d20h31m23s647ms; write "
                       "LT#...");
     if (!is_long) e.constant.integer = kept;
-    return is_long ? &ltime_type : &time_type;
+    return is_long ? &long_time_type(e.place) : &time_type;
 }
 
 const Type* check_text(Checking& c, Expression& e) {

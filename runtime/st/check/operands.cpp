@@ -131,4 +131,13 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     return coerce(c, left, *common) && coerce(c, right, *common) ? common : nullptr;
 }
 
+void keep_width(Checking& c, Expression*& e) {
+    const bool is_reckoned = e->kind == E::unary || e->kind == E::binary;
+    const bool is_whole =
+        e->type && (e->type->kind == Kind::integer || e->type->kind == Kind::bits);
+    if (e->place.dialect().vendor != Vendor::matiec || !is_reckoned || !is_whole) return;
+    e = make_converted(c, e, *e->type);
+    e->conversion.is_written = true;
+}
+
 }  // namespace lineshaft::st

@@ -458,10 +458,12 @@ const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
 }
 
 const Type* check_operation(Checking& c, Expression*& e, const Type* expected) {
+    for (Argument& argument : e->arguments) keep_width(c, argument.value);
     Expression* joined = join(c, *e, e->standard->word);
     if (!joined) return nullptr;
     e = joined;
-    return check(c, e, expected);
+    if (check(c, e, expected)) keep_width(c, e);
+    return e->type;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
@@ -11,7 +12,7 @@ namespace {
 /// ns.
 const Type* become_time(Checking& c, Expression*& e, bool is_long) {
     const bool counts_ms = e->place.dialect().times_count_ms;
-    e->type = counts_ms ? &ltime_type : &time_type;
+    e->type = !counts_ms ? &time_type : is_long ? &long_time_type(e->place) : &ltime_type;
     fold(c, e);
     return !e->type || is_long || !counts_ms ? e->type : convert(c, e, time_type);
 }
@@ -57,7 +58,7 @@ static bool take_count(Checking& c, Expression& e) {
                         (time.kind == Kind::time || time.kind == Kind::clock);
     if (!counts) return true;
     if (!coerce(c, e.operands[1], time.counts_ns ? lint_type : dint_type)) return false;
-    convert(c, e.operands[1], time.counts_ns ? ltime_type : time_type);
+    convert(c, e.operands[1], time.counts_ns ? long_time_type(e.place) : time_type);
     return true;
 }
 
@@ -93,7 +94,7 @@ const Type* check_scan_time(Checking& c, Expression*& e) {
     if (f.result == Generic::double_integer) return &dint_type;
     const bool counts_ms = e->place.dialect().times_count_ms && f.op != Op::interval_now;
     if (!counts_ms) return &time_type;
-    e->type = &ltime_type;
+    e->type = &long_time_type(e->place);
     return f.result == Generic::long_time ? e->type : convert(c, e, time_type);
 }
 

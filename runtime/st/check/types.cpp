@@ -218,8 +218,7 @@ const Type* resolve_subrange(Checking& c, const TypeText& text) {
         return c.fail(code::value_out_of_range, text.place, "the subrange has no value",
                       "the first bound is the smaller one");
     Type& type = c.checked.types.emplace_back(*base);
-    type.name = fmt::format("{}({}..{})", base->name, static_cast<std::int64_t>(*lower),
-                            static_cast<std::int64_t>(*upper));
+    type.name = fmt::format("{}({}..{})", base->name, *lower, *upper);
     type.is_subrange = true;
     type.is_unchecked = text.place.dialect().is_loose;
     type.base = base;
@@ -274,7 +273,14 @@ const Type* resolve(Checking& c, const TypeText& text) {
     return nullptr;
 }
 
+const Type& long_time_type(const Place& place) {
+    const bool has_no_sign =
+        place.dialect().is_loose && place.dialect().times_count_ms && !place.source->is_prelude();
+    return has_no_sign ? unsigned_ltime_type : ltime_type;
+}
+
 const Type* in_dialect(const Type* type, const Place& place) {
+    if (type == &ltime_type) return &long_time_type(place);
     if (has_wide_texts(place)) return type;
     return type == &wide_string_type ? &string_type : type == &wide_char_type ? &char_type : type;
 }

@@ -14,7 +14,10 @@ const Type* resolve_parameter(Checking& c, const TypeText& text);
 /// `REF_TO ARRAY[*] OF T` of a variable, which resolve_parameter() takes: it has bounds as well.
 bool refers_to_open_array(const TypeText& text);
 const Type* resolve_name(Checking& c, const Token& name);
-/// WSTRING and WCHAR are STRING and CHAR in SCL; another type, or null, is itself.
+/// LTIME, which has no sign in CODESYS and TwinCAT.
+const Type& long_time_type(const Place& place);
+/// WSTRING and WCHAR are STRING and CHAR in SCL, an LTIME is that of the dialect; another type, or
+/// null, is itself.
 const Type* in_dialect(const Type* type, const Place& place);
 const Type* resolve_declared(Checking& c, NamedType& named);
 

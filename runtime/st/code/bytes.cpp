@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/st/code/code.hpp"
+#include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/types.hpp"
 
 namespace lineshaft::st {
@@ -68,8 +69,9 @@ std::optional<std::uint64_t> value_of(const Type& type, std::uint64_t number) {
         if (it == type.numbers.end()) return {};
         return static_cast<std::uint64_t>(it - type.numbers.begin());
     }
-    const auto whole = static_cast<std::int64_t>(number);
-    if (type.in_a_run().is_subrange && (whole < type.lower || whole > type.upper)) return {};
+    const Wide whole = whole_in(type, number);
+    const bool fits = whole >= smallest(type) && whole <= largest(type);
+    if (type.in_a_run().is_subrange && !fits) return {};
     return number;
 }
 

@@ -48,7 +48,8 @@ void write_truth(std::byte* to, bool value) {
 
 void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
     fmt::memory_buffer text;
-    add_time(text, static_cast<Type::Kind>(kind & 0xFF), value, kind >> 8 != 0);
+    const Wide time = (kind & of_unsigned) != 0 ? Wide{static_cast<std::uint64_t>(value)} : value;
+    add_time(text, static_cast<Type::Kind>(kind & 0xFF), time, (kind & of_long) != 0);
     write_text(to, {text.data(), text.size()});
 }
 

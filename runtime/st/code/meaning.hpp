@@ -214,6 +214,9 @@ bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 
+/// Of a time as a text, beside its kind: it is a long one, and without a sign.
+inline constexpr std::uint32_t of_long = 0x100, of_unsigned = 0x200;
+
 /// In a number of room: what is no character of the text is read as 0 and not written, but for one
 /// right behind its end.
 inline constexpr std::uint32_t of_s7 = std::uint32_t{1} << 30;

@@ -90,7 +90,9 @@ void write_distance(Writing& w, const Expression& e) {
     const auto real = [&](std::size_t i) {
         const Expression& argument = *e.arguments[i].value;
         const Slot slot = value(w, argument);
-        return argument.type->is_real() ? slot : w.emit(Op::lreal_from_signed, none, slot);
+        if (argument.type->is_real()) return slot;
+        const bool is_unsigned = argument.type->is_unsigned_64();
+        return w.emit(is_unsigned ? Op::lreal_from_unsigned : Op::lreal_from_signed, none, slot);
     };
     const Slot found = real(0), wanted = real(1), tolerance = real(2);
     const Slot distance = w.emit(Op::abs_lreal, none, w.emit(Op::sub_lreal, none, found, wanted));

@@ -87,11 +87,13 @@ Slot convert_counted(Writing& w, Slot slot, const Type& to, Unit counted, Slot w
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::div_lint, none, slot, unit));
 }
 
-Slot convert_real_time(Writing& w, Slot slot, const Type& to, Unit counted, Slot wanted) {
+Slot convert_real_time(Writing& w, Slot slot, const Type& from, const Type& to, Unit counted,
+                       Slot wanted) {
     const Slot unit = w.constant_slot(lreal_type, {.real = static_cast<double>(counted)});
     if (to.is_time())
-        return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, slot, unit));
-    const Slot real = w.emit(Op::lreal_from_signed, none, slot);
+        return w.emit(of_type(Op::round_sint, to), wanted, w.emit(Op::mul_lreal, none, slot, unit));
+    const Slot real =
+        w.emit(from.is_unsigned_64() ? Op::lreal_from_unsigned : Op::lreal_from_signed, none, slot);
     const Slot count = w.emit(Op::div_lreal, wanted, real, unit);
     return to.bits == 32 ? w.emit(Op::narrow, wanted, count) : count;
 }
@@ -100,7 +102,7 @@ Slot convert_real_time(Writing& w, Slot slot, const Type& to, Unit counted, Slot
 Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
-    if (number.is_real()) return convert_real_time(w, slot, to, unit_of(time), wanted);
+    if (number.is_real()) return convert_real_time(w, slot, from, to, unit_of(time), wanted);
     const bool in_days = time.kind == Kind::date && number.bits == 16;
     return number.bits == 64
                ? slot
@@ -116,7 +118,7 @@ bool is_of_matiec(const Expression& e) {
 
 Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const bool is_real = from.is_real() || to.is_real();
-    return is_real ? convert_real_time(w, slot, to, of_seconds, wanted)
+    return is_real ? convert_real_time(w, slot, from, to, of_seconds, wanted)
                    : convert_counted(w, slot, to, of_seconds, wanted);
 }
 
@@ -179,11 +181,13 @@ bool is_whole(const Expression& e) {
 }
 
 /// A TIME begins again at 2^32 ms, in SCL after 2^31 - 1 with the least one.
-Slot in_whole_units(Writing& w, Slot slot, const Type& to, bool has_sign, Slot wanted) {
+Slot in_whole_units(Writing& w, Slot slot, const Type& from, const Type& to, bool has_sign,
+                    Slot wanted) {
     const Slot unit = w.constant_slot(to.kind == Kind::date     ? 86'400'000'000'000U
                                       : to.kind == Kind::moment ? 1'000'000'000U
                                                                 : 1'000'000U);
-    Slot count = w.emit(Op::div_lint, none, slot, unit);
+    const bool is_unsigned = from.is_unsigned_64() && from.is_time();
+    Slot count = w.emit(is_unsigned ? Op::div_ulint : Op::div_lint, none, slot, unit);
     if (to.kind == Kind::time)
         count = w.emit(of_type(Op::wrap_sint, integer_type(32, has_sign)), none, count);
     return w.emit(Op::mul_lint, wanted, count, unit);
@@ -198,7 +202,7 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
         slot = convert_counted(w, slot, to, unit_of(to), none);
     else
         slot = convert(w, slot, from, to, false, none);
-    return in_whole_units(w, slot, to, is_of_s7(e), wanted);
+    return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
 }
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
@@ -216,7 +220,7 @@ bool is_finer_than_ms(const Type* block, const Type& type, const Place& place) {
 }
 
 Slot whole_ms(Writing& w, Slot slot, const Place& place, Slot wanted) {
-    return in_whole_units(w, slot, time_type, is_of_s7(place), wanted);
+    return in_whole_units(w, slot, time_type, time_type, is_of_s7(place), wanted);
 }
 
 Slot attempted(Writing& w, const Expression& e, Slot wanted) {
@@ -266,7 +270,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
         if (e.type->is_time()) {
             const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
-            return is_whole(e) ? in_whole_units(w, time, *e.type, is_s7, wanted) : time;
+            return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
         }
         if (e.type->is_character) {
             const Slot to = w.result(wanted);

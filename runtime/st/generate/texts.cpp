@@ -86,7 +86,8 @@ Slot text_conversion(Writing& w, const Expression& e) {
     if (from.type->is_time()) {
         const bool is_long = from.type->counts_ns && e.place.dialect().vendor != Vendor::siemens;
         w.put(Op::text_of_time, made, number,
-              static_cast<Slot>(from.type->kind) | (is_long ? 0x100U : 0U));
+              static_cast<Slot>(from.type->kind) | (is_long ? meaning::of_long : 0U) |
+                  (from.type->is_unsigned_64() ? meaning::of_unsigned : 0U));
         if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
             e.place.dialect().vendor == Vendor::codesys)
             write_no_time(w, number, made);

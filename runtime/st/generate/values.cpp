@@ -92,7 +92,8 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         return compare_texts(w, e.op, a, b, wanted);
     }
     const Slot a = wide_value_before(w, left, right), b = wide_value(w, right);
-    if (!is_false_of_nan(e)) return compare(w, e.op, *left.type, a, b, wanted);
+    const Type& type = right.type->is_unsigned_64() ? *right.type : *left.type;
+    if (!is_false_of_nan(e)) return compare(w, e.op, type, a, b, wanted);
     const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);
     return w.emit(Op::or_bits, wanted, below, above);
 }
@@ -110,15 +111,16 @@ Slot lazy(Writing& w, const Expression& e) {
 
 Slot reckon(Writing& w, const Expression& e, Slot a, Slot b, Slot wanted) {
     const Type& type = *e.type;
+    const Op from_whole = type.is_unsigned_64() ? Op::lreal_from_unsigned : Op::lreal_from_signed;
     if (type.kind == Kind::time && e.operands[1]->type->is_real()) {
-        const Slot real = w.emit(Op::lreal_from_signed, none, a);
+        const Slot real = w.emit(from_whole, none, a);
         const Slot product =
             w.emit(e.op == Word::times ? Op::mul_lreal : Op::div_lreal, none, real, b);
-        return w.emit(Op::round_lint, wanted, product);
+        return w.emit(of_type(Op::round_sint, type), wanted, product);
     }
     if (type.kind == Kind::time && e.operands[0]->type->is_real()) {
-        const Slot real = w.emit(Op::lreal_from_signed, none, b);
-        return w.emit(Op::round_lint, wanted, w.emit(Op::mul_lreal, none, a, real));
+        const Slot real = w.emit(from_whole, none, b);
+        return w.emit(of_type(Op::round_sint, type), wanted, w.emit(Op::mul_lreal, none, a, real));
     }
     if (e.op == Word::and_) return w.emit(Op::and_bits, wanted, a, b);
     if (e.op == Word::or_) return w.emit(Op::or_bits, wanted, a, b);
@@ -283,7 +285,7 @@ Slot value_before(Writing& w, const Expression& e, const Expression& later) {
 Slot within(Writing& w, const Type& type, Slot slot) {
     const auto least = static_cast<std::int64_t>(smallest(type));
     const auto count = static_cast<std::uint64_t>(largest(type) - smallest(type)) + 1;
-    w.put(Op::within, 0, slot, w.table({least, count, 1}));
+    if (count > 0) w.put(Op::within, 0, slot, w.table({least, count, 1}));
     return slot;
 }
 

@@ -3,6 +3,7 @@
 #include "runtime/st/code/machine.hpp"
 #include "runtime/st/generate/generator.hpp"
 #include "runtime/st/library/compiled.hpp"
+#include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
 
@@ -12,7 +13,7 @@ Constant constant_of(const Type& type, const std::uint64_t* slots) {
     if (type.kind == Type::Kind::text)
         return {.text = {reinterpret_cast<const char*>(slots + 1), std::size_t{*slots}}};
     if (type.is_real()) return {.real = std::bit_cast<double>(*slots)};
-    return {.integer = type.is_unsigned_64() ? Wide{*slots} : static_cast<std::int64_t>(*slots)};
+    return {.integer = whole_in(type, *slots)};
 }
 
 }  // namespace

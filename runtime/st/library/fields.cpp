@@ -203,6 +203,7 @@ class FieldWriter {
         const auto value = type.kind == Kind::boolean       ? lineshaft::Type::boolean
                            : type.is_real()                 ? lineshaft::Type::real
                            : type.kind == Kind::enumeration ? lineshaft::Type::enumeration
+                           : type.is_unsigned_64()          ? lineshaft::Type::unsigned_integer
                                                             : lineshaft::Type::integer;
         Field& field = add(name, direction, value, offset);
         field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);

@@ -77,10 +77,13 @@ Field field_of(const Type& type, const ImageAddress& address) {
     field.direction = direction_of(address.area);
     field.type = type.kind == Kind::boolean ? lineshaft::Type::boolean
                  : type.is_real()           ? lineshaft::Type::real
+                 : type.is_unsigned_64()    ? lineshaft::Type::unsigned_integer
                                             : lineshaft::Type::integer;
     if (type.is_time()) field.unit = "ns";
     const bool is_number = type.kind == Kind::integer || type.kind == Kind::bits;
-    if (is_number && type.bits < 64) {
+    if (type.is_unsigned_64()) {
+        field.minimum = 0;
+    } else if (is_number && type.bits < 64) {
         field.minimum = static_cast<double>(smallest(type));
         field.maximum = static_cast<double>(largest(type));
     } else if (type.is_real() && type.bits == 32) {

@@ -24,7 +24,7 @@ bool is_in_range(const KindContext::Check& check, std::byte* instance) {
         std::memcpy(place, &narrow, sizeof narrow);
         return true;
     }
-    const auto value = read<std::int64_t>(place);
+    const Wide value = whole_in(*check.type, read<std::uint64_t>(place));
     return value >= smallest(*check.type) && value <= largest(*check.type);
 }
 
@@ -279,7 +279,8 @@ bool is_value(const Type& type, const std::byte* place) {
         case Kind::integer:
         case Kind::bits:
             if (type.bits == 64 && !type.in_a_run().is_subrange) return true;
-            return number >= smallest(type.in_a_run()) && number <= largest(type.in_a_run());
+            return whole_in(type, read<std::uint64_t>(place)) >= smallest(type.in_a_run()) &&
+                   whole_in(type, read<std::uint64_t>(place)) <= largest(type.in_a_run());
         case Kind::real: {
             const auto value = read<double>(place);
             return type.bits == 64 || !std::isfinite(value) ||

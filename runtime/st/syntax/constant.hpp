@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/source/wide.hpp"
+
 namespace lineshaft::st {
 
-__extension__ using Wide = __int128;
+using lineshaft::Wide;
 
 /// Of two numbers within +-2^64. A product beyond Wide comes to another one outside of +-2^64.
 inline Wide product(Wide a, Wide b) {

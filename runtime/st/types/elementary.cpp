@@ -28,8 +28,8 @@ Type character(const char* name, int bits) {
     return type;
 }
 
-Type long_time(Kind kind, const char* name) {
-    Type type = elementary(kind, name, 64, true);
+Type long_time(Kind kind, const char* name, bool is_signed = true) {
+    Type type = elementary(kind, name, 64, is_signed);
     type.counts_ns = true;
     return type;
 }
@@ -98,6 +98,7 @@ const Type open_string = text_type(scl.text_length, true);
 const Type open_wide_string = text_type(scl.text_length, true, true);
 const Type wide_string = text_type(scl.text_length, false, true);
 const Type wide_character = character("WCHAR", 16);
+const Type unsigned_ltime = long_time(Kind::time, "LTIME", false);
 const Type any_integer = elementary(Kind::any_integer, "a whole number", 64, true);
 const Type any_real = elementary(Kind::any_real, "a real number");
 const Type any_bits = elementary(Kind::any_bits, "a whole number");
@@ -113,7 +114,7 @@ const Type &bool_type = table[0], &int_type = table[2], &dint_type = table[3],
            &any_integer_type = any_integer, &any_real_type = any_real, &any_bits_type = any_bits,
            &string_type = table[17], &open_string_type = open_string, &char_type = table[28],
            &wide_string_type = wide_string, &open_wide_string_type = open_wide_string,
-           &wide_char_type = wide_character;
+           &wide_char_type = wide_character, &unsigned_ltime_type = unsigned_ltime;
 
 const Type* find_codesys_type(std::string_view name) {
     static const Type bit = [] {
@@ -249,13 +250,17 @@ bool same_type(const Type& a, const Type& b) {
 }
 
 Wide smallest(const Type& type) {
-    if (type.is_subrange) return type.lower;
+    if (type.is_subrange) return whole_in(type, static_cast<std::uint64_t>(type.lower));
     return type.is_signed ? -(Wide{1} << (type.bits - 1)) : 0;
 }
 
 Wide largest(const Type& type) {
-    if (type.is_subrange) return type.upper;
+    if (type.is_subrange) return whole_in(type, static_cast<std::uint64_t>(type.upper));
     return (Wide{1} << (type.is_signed ? type.bits - 1 : type.bits)) - 1;
+}
+
+Wide whole_in(const Type& type, std::uint64_t slot) {
+    return type.is_unsigned_64() ? Wide{slot} : static_cast<std::int64_t>(slot);
 }
 
 Wide wrapped(const Type& type, Wide value) {

@@ -37,7 +37,7 @@ const Type* find_codesys_type(std::string_view name);
 extern const Type &bool_type, &int_type, &dint_type, &lint_type, &ulint_type, &real_type,
     &lreal_type, &time_type, &ltime_type, &date_type, &clock_type, &moment_type, &any_integer_type,
     &any_real_type, &any_bits_type, &string_type, &open_string_type, &char_type, &wide_string_type,
-    &open_wide_string_type, &wide_char_type;
+    &open_wide_string_type, &wide_char_type, &unsigned_ltime_type;
 
 /// The integer or bit string of that width.
 const Type& integer_type(int bits, bool is_signed);
@@ -54,6 +54,9 @@ bool same_type(const Type& a, const Type& b);
 /// Limits of an integer, a bit string, a boolean; of a subrange its own.
 Wide smallest(const Type& type);
 Wide largest(const Type& type);
+
+/// What a slot has of an integer, a bit string, a time.
+Wide whole_in(const Type& type, std::uint64_t slot);
 
 /// `value` in the type's width: what is beyond it wraps.
 Wide wrapped(const Type& type, Wide value);

@@ -57,7 +57,8 @@ struct Type {
     int bits = 64;              ///< of integer, bits, real
     std::string name = {};      ///< as messages show it
     std::uint32_t slots = 1;
-    std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values
+    std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values, as a
+                                         ///< slot has them
     bool is_subrange = false;
     bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
@@ -112,7 +113,8 @@ struct Type {
     bool is_pointer() const { return is_reference() && referring == Referring::pointer; }
     bool is_instance() const { return kind == Kind::block || kind == Kind::standard; }
     bool is_unsigned_64() const {
-        return (is_bits() || kind == Kind::integer) && !is_signed && bits == 64;
+        return (is_bits() || kind == Kind::integer || kind == Kind::time) && !is_signed &&
+               bits == 64;
     }
     /// Of a text: what an instruction has as its room, and the bytes that its slots have room for.
     std::uint32_t room() const { return is_wide ? length | of_units : length; }

@@ -8,6 +8,7 @@
 
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/syntax/literals.hpp"
+#include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
 
@@ -26,7 +27,7 @@ std::string real_text(double value, bool is_long) {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-void add_duration(Out to, std::int64_t nanoseconds, bool is_long) {
+void add_duration(Out to, Wide nanoseconds, bool is_long) {
     constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
                                                                {3'600'000'000'000, "h"},
                                                                {60'000'000'000, "m"},
@@ -34,8 +35,7 @@ void add_duration(Out to, std::int64_t nanoseconds, bool is_long) {
                                                                {1'000'000, "ms"},
                                                                {1'000, "us"},
                                                                {1, "ns"}};
-    auto left = static_cast<std::uint64_t>(nanoseconds);
-    if (nanoseconds < 0) left = 0 - left;
+    auto left = static_cast<std::uint64_t>(nanoseconds < 0 ? -nanoseconds : nanoseconds);
     fmt::format_to(to, "{}#{}{}", is_long ? "LTIME" : "T", nanoseconds < 0 ? "-" : "",
                    nanoseconds == 0 ? "0s" : "");
     for (const auto& [size, unit] : units) {
@@ -68,7 +68,7 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
         fmt::format_to(to, ".{:03}", rest / 1'000'000);
 }
 
-std::string literal(Kind kind, std::int64_t nanoseconds) {
+std::string literal(Kind kind, Wide nanoseconds) {
     fmt::memory_buffer text;
     add_time(text, kind, nanoseconds);
     return fmt::to_string(text);
@@ -97,7 +97,7 @@ std::string value_text(const Type& type, std::uint64_t slot) {
         case Kind::date:
         case Kind::clock:
         case Kind::moment:
-            return literal(type.kind, number);
+            return literal(type.kind, whole_in(type, slot));
         case Kind::enumeration:
             return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
                                              : std::to_string(number);
@@ -110,11 +110,11 @@ std::string time_literal(std::int64_t nanoseconds) {
     return literal(Kind::time, nanoseconds);
 }
 
-void add_time(fmt::memory_buffer& to, Kind kind, std::int64_t nanoseconds, bool is_long) {
+void add_time(fmt::memory_buffer& to, Kind kind, Wide nanoseconds, bool is_long) {
     if (kind == Kind::time)
         add_duration(std::back_inserter(to), nanoseconds, is_long);
     else
-        add_date(std::back_inserter(to), kind, nanoseconds, is_long);
+        add_date(std::back_inserter(to), kind, static_cast<std::int64_t>(nanoseconds), is_long);
 }
 
 std::optional<Wide> read_time(std::string_view text, Kind kind) {

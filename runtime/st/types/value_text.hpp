@@ -18,8 +18,7 @@ std::string time_literal(std::int64_t nanoseconds);
 
 /// Adds it, of a kind with a time: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
 /// `DT#2020-02-29-12:30:15`; `is_long` of LTIME and its like, `LTIME#1s500ms`. Allocates nothing.
-void add_time(fmt::memory_buffer& to, Type::Kind kind, std::int64_t nanoseconds,
-              bool is_long = false);
+void add_time(fmt::memory_buffer& to, Type::Kind kind, Wide nanoseconds, bool is_long = false);
 
 /// What stands behind the '#' of a literal of a kind with a time, in ns; empty if it is none.
 std::optional<Wide> read_time(std::string_view text, Type::Kind kind);

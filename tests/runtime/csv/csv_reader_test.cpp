@@ -128,12 +128,17 @@ TEST_CASE("what the writer wrote is read back bit by bit") {
     TraceSetup setup;
     setup.signals = {{.name = "a.x", .type = Type::real, .unit = "mm", .names = {}},
                      {.name = "a.n", .type = Type::integer, .unit = {}, .names = {}},
-                     {.name = "a.on", .type = Type::boolean, .unit = {}, .names = {}}};
+                     {.name = "a.on", .type = Type::boolean, .unit = {}, .names = {}},
+                     {.name = "a.u", .type = Type::unsigned_integer, .unit = {}, .names = {}}};
     const std::vector<double> reals{0.1, -1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0};
     CsvWriter writer(folder / "t.csv", setup);
     for (std::size_t i = 0; i < reals.size(); ++i) {
-        const std::uint64_t row[] = {i * 2'000'000, i, std::bit_cast<std::uint64_t>(reals[i]),
-                                     (std::uint64_t{1} << 63) + i, i % 2};
+        const std::uint64_t row[] = {i * 2'000'000,
+                                     i,
+                                     std::bit_cast<std::uint64_t>(reals[i]),
+                                     (std::uint64_t{1} << 63) + i,
+                                     i % 2,
+                                     ~std::uint64_t{i}};
         writer.rows(row, 1);
     }
     OutputSet files;
@@ -149,9 +154,11 @@ TEST_CASE("what the writer wrote is read back bit by bit") {
         CHECK(static_cast<std::uint64_t>(table->find("a.n")->integer(i)) ==
               (std::uint64_t{1} << 63) + i);
         CHECK(table->find("a.on")->values[i] == static_cast<double>(i % 2));
+        CHECK(table->find("a.u")->integer(i) == Wide{~std::uint64_t{i}});
         CHECK(table->find("time")->values[i] == static_cast<double>(i) * 2e-3);
     }
     CHECK(table->find("a.x")->unit == "mm");
+    CHECK(table->find("a.u")->type == Type::integer);
 }
 
 TEST_CASE("a file that is not there, a folder and an empty file are told") {

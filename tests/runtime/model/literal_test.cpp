@@ -49,6 +49,15 @@ TEST_CASE("literal: a whole number with a unit comes out whole") {
     CHECK(read(field_of(Type::integer, "pulses"), "12") == "L0302: '12' has no unit");
 }
 
+TEST_CASE("literal: an integer without a sign has all its values, and none below 0") {
+    const Field field = field_of(Type::unsigned_integer).at_least(0);
+    CHECK(read(field, "18446744073709551615") == "18446744073709551615");
+    CHECK(read(field, "16#8000_0000_0000_0000") == "9223372036854775808");
+    CHECK(read(field, "-1") == "L0305: '-1' is out of range for 'port'");
+    CHECK(read(field_of(Type::integer), "9223372036854775808") ==
+          "L0305: '9223372036854775808' is out of range for 'port'");
+}
+
 TEST_CASE("literal: names are checked") {
     CHECK(read(field_of(Type::enumeration).one_of(colours), "grean") ==
           "L0306: 'grean' is not a value of 'port'");

@@ -16,6 +16,7 @@ TEST_CASE("a stored value is loaded again and its neighbours are left alone") {
                {Type::boolean, false},
                {Type::integer, std::numeric_limits<std::int64_t>::min()},
                {Type::enumeration, std::int64_t{2}},
+               {Type::unsigned_integer, std::numeric_limits<std::uint64_t>::max()},
                {Type::real, -0.1}};
     for (const auto& [type, value] : all) {
         std::array<std::byte, 10> memory;
@@ -31,6 +32,7 @@ TEST_CASE("a trace has 0 and 1, whole numbers and the shortest reals") {
     CHECK(format(true) == "1");
     CHECK(format(false) == "0");
     CHECK(format(std::int64_t{-12}) == "-12");
+    CHECK(format(std::numeric_limits<std::uint64_t>::max()) == "18446744073709551615");
     CHECK(format(0.1) == "0.1");
     CHECK(format(1e300) == "1e+300");
 }
@@ -68,11 +70,35 @@ TEST_CASE("integers and reals are compared exactly") {
     CHECK_FALSE(std::is_lteq(compare(not_a_number, most)));
 }
 
+TEST_CASE("integers without a sign are compared with all others by what they are") {
+    constexpr std::uint64_t edge = std::uint64_t{1} << 63, most = 2 * edge - 1;
+    CHECK(std::is_gt(compare(most, std::int64_t{-1})));
+    CHECK(std::is_gt(compare(most, std::numeric_limits<std::int64_t>::max())));
+    CHECK(std::is_eq(compare(std::uint64_t{5}, std::int64_t{5})));
+    CHECK(std::is_eq(compare(edge, 0x1p63)));
+    CHECK(std::is_gt(compare(edge + 1, 0x1p63)));
+    CHECK(std::is_lt(compare(most, 0x1p64)));
+    CHECK(std::is_lt(compare(std::int64_t{-1}, std::uint64_t{0})));
+}
+
+TEST_CASE("a whole number is a value of the types that have it") {
+    constexpr Wide edge = Wide{1} << 63;
+    CHECK(whole_value(-1, Type::unsigned_integer) == std::nullopt);
+    CHECK(whole_value(-1, Type::integer) == Value(std::int64_t{-1}));
+    CHECK(whole_value(edge, Type::integer) == std::nullopt);
+    CHECK(whole_value(edge, Type::unsigned_integer) == Value(std::uint64_t{1} << 63));
+    CHECK(whole_value(2 * edge, Type::unsigned_integer) == std::nullopt);
+    CHECK(whole(Value(std::uint64_t{1} << 63)) == edge);
+    CHECK(whole(Value(true)) == Wide{1});
+    CHECK(whole(Value(1.0)) == std::nullopt);
+}
+
 TEST_CASE("the order of random values is that of the numbers they stand for") {
     std::mt19937_64 random(1);
     const auto near = [&](std::int64_t number) -> Value {
         const std::uint64_t moved = static_cast<std::uint64_t>(number) + random() % 3 - 1;
-        if (random() % 2 == 0) return static_cast<std::int64_t>(moved);
+        if (random() % 3 == 0) return static_cast<std::int64_t>(moved);
+        if (random() % 3 == 0) return moved;
         return static_cast<double>(number);
     };
     // 64 bits of mantissa hold both exactly.

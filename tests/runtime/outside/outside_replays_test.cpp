@@ -143,6 +143,29 @@ trace: {task: main, signals: [x.out, flag.out, n.pv]}
     CHECK(recorded(folder, "second", pass_through("first", "2 ms", "0 mm")) == first);
 }
 
+TEST_CASE("integers without a sign come back from a replay with the same bytes", "[replay]") {
+    const Folder folder;
+    write(folder / "pass.st",
+          "FUNCTION_BLOCK Pass\nVAR_INPUT u : ULINT; END_VAR\nVAR_OUTPUT v : ULINT; END_VAR\n"
+          "v := u;\nEND_FUNCTION_BLOCK\n");
+    const auto program = [](const std::string& stimulus) {
+        return fmt::format(R"(lineshaft: 1
+tasks: {{main: {{every: 1 ms}}}}
+sources: [pass.st]
+blocks: {{p: {{type: Pass, task: main}}}}
+stimulus: [{}]
+run: {{for: 20 ms}}
+trace: {{task: main, signals: [p.v]}}
+)",
+                           stimulus);
+    };
+    const std::string first = recorded(folder, "first",
+                                       program("{at: 5 ms, set: {p.u: 18446744073709551615}}, "
+                                               "{at: 10 ms, set: {p.u: 9223372036854775808}}"));
+    CHECK(first.find(",18446744073709551615\n") != std::string::npos);
+    CHECK(recorded(folder, "second", program("{file: first.csv, set: {p.u: p.v}}")) == first);
+}
+
 TEST_CASE("any reals come back from a replay with the same bytes", "[replay]") {
     const Folder folder;
     std::mt19937_64 random(1);

@@ -93,6 +93,10 @@ TEST_CASE("a resumed run leaves the same bytes: a replayed trace", "[resume]") {
     check_resumed("../tests/cases/replay_plays_a_recorded_trace/program.yaml", false);
 }
 
+TEST_CASE("a resumed run leaves the same bytes: forces of integers without a sign", "[resume]") {
+    check_resumed("../tests/cases/unsigned_numbers_of_64_bits/program.yaml", false);
+}
+
 TEST_CASE("a foreign or cut checkpoint is refused", "[resume]") {
     const Folder folder;
     RunOptions options = options_in(folder);

@@ -342,6 +342,8 @@ TEST_CASE("inputs are converted as their wires say") {
     struct Ports {
         bool yes = true, inverted = true;
         std::int64_t three = 3;
+        std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+        double of_most = 0;
         double millimetres = 20, real = 0, tenths = 0, centimetres = 0;
     } ports;
     Bench bench({{.name = "a"}});
@@ -352,17 +354,20 @@ TEST_CASE("inputs are converted as their wires say") {
                              {at(ports.three), at(bench.live("a").input)},
                              {at(ports.three), at(ports.real)}},
                   .rows = {},
-                  .scaled = {{at(ports.three), at(ports.tenths), 1, 10, true},
-                             {at(ports.millimetres), at(ports.centimetres), 1, 10, false}}};
+                  .scaled = {{at(ports.three), at(ports.tenths), 1, 10, Type::integer},
+                             {at(ports.millimetres), at(ports.centimetres), 1, 10, Type::real},
+                             {at(ports.most), at(ports.of_most), 1, 1, Type::unsigned_integer}}};
     Call& call = task.calls.front();
     call.feed = Feed::many;
     call.first_copy = task.wires.copies.data();
     call.first_scaled = task.wires.scaled.data();
     call.words = call.widened = 1;
-    call.booleans = call.scaled = 2;
+    call.booleans = 2;
+    call.scaled = 3;
     bench.machine.duration = 0;
     bench.run();
     CHECK(bench.live("a").wanted);
+    CHECK(ports.of_most == 0x1p64);
     CHECK_FALSE(ports.inverted);
     CHECK(ports.real == 3);
     CHECK(ports.tenths == 0.3);

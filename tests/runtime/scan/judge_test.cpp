@@ -70,6 +70,20 @@ TEST_CASE("integers are judged as integers, whatever their size") {
     }
 }
 
+TEST_CASE("an integer without a sign is judged by what it is, and told so") {
+    constexpr std::uint64_t value = std::numeric_limits<std::uint64_t>::max();
+    Expectation e{.text = {}, .signal = {}, .low = value, .high = value, .wanted = "it"};
+    e.signal.name = "a.n";
+    e.signal.type = Type::unsigned_integer;
+    e.signal.slot = reinterpret_cast<const std::byte*>(&value);
+    Expectation other = e;
+    other.low = other.high = std::int64_t{-1};
+    Judge judge({e, other});
+    judge.finish({});
+    CHECK(judge.verdicts()[0].ok);
+    CHECK(judge.verdicts()[1].deviation == "a.n is 18446744073709551615 at 0 s; expected it");
+}
+
 TEST_CASE("an expectation at an instant sees what was published at it, and until the next scan") {
     Counted c;
     const Judge judge = c.judged({c.at(4, 3), c.at(5, 3), c.at(4, 2), c.at(0, 1), c.at(10, 6)});

@@ -52,6 +52,18 @@ TEST_CASE("what a type does not have is the nearest that it has") {
           Words{});
 }
 
+TEST_CASE("integers without a sign have all 64 bits in their registers, and come back from them") {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+    const MappedSignal all = mapped(uint64, 4, Type::unsigned_integer);
+    CHECK(written(all, most) == Words{0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF});
+    CHECK(from_registers(all, Words{0xFFFF, 0xFFFF, 0xFFFF, 0xFFFE}) == Value{most - 1});
+    const MappedSignal with_sign = mapped(int64, 4, Type::unsigned_integer);
+    CHECK(written(with_sign, most) == Words{0x7FFF, 0xFFFF, 0xFFFF, 0xFFFF});
+    CHECK_FALSE(from_registers(with_sign, Words{0x8000, 0, 0, 0}));
+    CHECK(from_registers(mapped(real32, 2, Type::unsigned_integer), Words{0x5F00, 0}) ==
+          Value{std::uint64_t{1} << 63});
+}
+
 TEST_CASE("a value that its registers have comes back from them") {
     std::mt19937_64 random(7);
     struct Kind {

@@ -106,10 +106,24 @@ TEST_CASE("reader: whole numbers") {
     const Reader read(out);
     CHECK(read.integer(scalar("-3")) == -3);
     CHECK(read.integer(scalar("16#E0")) == 224);
+    CHECK(read.whole(scalar("-3")) == Wide{-3});
+    CHECK(read.whole(scalar("18446744073709551615")) ==
+          Wide{std::numeric_limits<std::uint64_t>::max()});
     CHECK(out.empty());
     const std::string bad = GENERATE("3.0", "3 mm", "1e3");
     CHECK(read.integer(scalar(bad)) == std::nullopt);
     CHECK(first(out) == "L0309: '" + bad + "' is not a whole number");
+}
+
+TEST_CASE("reader: whole numbers beyond 64 bits, or beyond those with a sign") {
+    Diagnostics out;
+    CHECK(Reader(out).integer(scalar("9223372036854775808")) == std::nullopt);
+    CHECK(first(out) ==
+          "L0305: '9223372036854775808' is above 9223372036854775807, the greatest integer that "
+          "has a sign");
+    Diagnostics beyond;
+    CHECK(Reader(beyond).whole(scalar("18446744073709551616")) == std::nullopt);
+    CHECK(first(beyond) == "L0305: '18446744073709551616' is beyond a 64-bit number's range");
 }
 
 TEST_CASE("reader: times are whole nanoseconds") {

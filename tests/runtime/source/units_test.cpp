@@ -212,9 +212,12 @@ TEST_CASE("integers are kept exactly") {
     CHECK(integer("16#7FFF_FFFF_FFFF_FFFF") == std::numeric_limits<std::int64_t>::max());
     CHECK(quantity("16#10 ms").unit.text == "ms");
     CHECK(quantity("16#10").number == 16);
-    CHECK_FALSE(quantity("9223372036854775808").is_integer);
+    CHECK(integer("9223372036854775808") == std::uint64_t{1} << 63);
+    CHECK(integer("18446744073709551615") == std::numeric_limits<std::uint64_t>::max());
+    CHECK(integer("16#FFFF_FFFF_FFFF_FFFF") == std::numeric_limits<std::uint64_t>::max());
+    CHECK_FALSE(quantity("18446744073709551616").is_integer);
+    CHECK_FALSE(quantity("-9223372036854775809").is_integer);
     CHECK(quantity("9223372036854775808").number == 9223372036854775808.0);
-    CHECK_FALSE(quantity("16#FFFF_FFFF_FFFF_FFFF").is_integer);
     CHECK(quantity("16#FFFF_FFFF_FFFF_FFFF").number == 18446744073709551615.0);
     for (const char* text : {"5.", "5.0", "5e0", ".5"}) CHECK_FALSE(quantity(text).is_integer);
 }

@@ -85,6 +85,19 @@ TEST_CASE("whole numbers are compared exactly, whatever the tolerance of reals")
     CHECK(compare(a, b, {.all = 1e9, .columns = {}}).first->row == 2);
 }
 
+TEST_CASE("integers beyond those with a sign lie as far apart as they do") {
+    CsvTable a = table(times, {1, 2, 3}), b = a;
+    a.columns[1].type = b.columns[1].type = Type::integer;
+    constexpr Wide most = (Wide{1} << 64) - 1;
+    a.columns[1].large = {{2, most}};
+    b.columns[1].large = {{2, -(Wide{1} << 63)}};
+    CHECK(compare(a, b, {}).first->row == 2);
+    CHECK(compare(a, b, {}).apart.front().greatest == 0x1.8p64);
+    b.columns[1].large = {{2, most - 2}};
+    CHECK(compare(a, b, {.all = 0, .columns = {{"a.x", 2}}}).same(a, b));
+    CHECK_FALSE(compare(a, b, {.all = 0, .columns = {{"a.x", 1}}}).same(a, b));
+}
+
 TEST_CASE("tables of other length differ, though their rows agree") {
     const CsvTable a = table(times, {1, 2, 3}), b = table({0, 0.002}, {1, 2});
     const TraceComparison found = compare(a, b, {});

@@ -22,10 +22,12 @@ function tell(text) {
   byId("message").hidden = !text;
 }
 
-/** What was typed, as a number where it is one. */
+/** What was typed, as a number where it is one; an integer that a number here would round stays what was typed. */
 function typed({ value }) {
   const text = value.trim();
-  return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
+  const number = Number(text);
+  const isRounded = /^[-+]?\d+$/.test(text) && !Number.isSafeInteger(number);
+  return text !== "" && Number.isFinite(number) && !isRounded ? number : text;
 }
 
 /** Does what a click asks for, and says why not. */
