@@ -431,6 +431,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         Routine* routine = c.find_routine(callee.token);
+        if (routine && take_as_variant(c, e, *routine))
+            return check_call(c, e, as_statement, expected);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
                 !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||
