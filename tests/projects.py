@@ -1150,6 +1150,25 @@ def check_apax():
     run("new", "of_package", "--from", "package")
 
 
+def check_packages_beside():
+    write("packages/leaf/apax.yml", "name: '@x/leaf' # the last\ntype: lib\n")
+    write("packages/leaf/src/leaf.st", "NAMESPACE X.Leaf\nCLASS Leaf\nMETHOD PUBLIC Two : INT\nTwo := 2;\nEND_METHOD\nEND_CLASS\nEND_NAMESPACE\n")
+    write("packages/leaf/test/leaf.st", "this is nothing\n{TestFixture}\n")
+    write("packages/stem/apax.yml", 'name: "@x/stem"\ndependencies:\n  "@ax/system-math": ^1.0.0\n  "@x/leaf": ^1.0.0\n')
+    write("packages/stem/src/stem.st", "USING X.Leaf;\nNAMESPACE X.Stem\nCLASS Stem\nVAR leaf : Leaf; END_VAR\n"
+          "METHOD PUBLIC Four : INT\nFour := 2 * leaf.Two();\nEND_METHOD\nEND_CLASS\nEND_NAMESPACE\n")
+    write("packages/other/apax.yml", "name: other\n")
+    write("packages/other/src/other.st", "this is nothing\n")
+    write("packages/top/apax.yml", "name: top\ndependencies:\n  '@x/stem': 1.0.0\nvariables:\n  other: 1\n")
+    write("packages/top/src/top.st", "USING X.Stem;\nPROGRAM Main\nVAR stem : Stem; n : INT; END_VAR\nn := stem.Four();\nEND_PROGRAM\n")
+    write("packages/top/test/top.st", "USING AxUnit.Assert;\nUSING X.Stem;\n{TestFixture}\nCLASS T\nVAR PROTECTED stem : Stem; END_VAR\n"
+          "{Test}\nMETHOD PUBLIC Counts\nEqual(expected := 4, actual := stem.Four());\nEND_METHOD\nEND_CLASS\n")
+    run("check", "packages/top")
+    run("new", "of_packages", "--from", "packages/top")
+    (work / "packages/leaf/apax.yml").write_text("name: another\n")
+    assert "there is no namespace 'X.Leaf'" in run("check", "packages/top", code=2)
+
+
 def twincat(folder, kind, name, declaration, body="", members=""):
     ending = {"POU": "TcPOU", "GVL": "TcGVL", "DUT": "TcDUT"}[kind]
     code = f"<Implementation><ST><![CDATA[{body}]]></ST></Implementation>" if kind == "POU" else ""
@@ -1630,6 +1649,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_local_types()
     check_awl()
     check_apax()
+    check_packages_beside()
     check_solution()
     check_named_programs()
     check_qualified_names()

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/projects/apax.hpp"
 #include "runtime/projects/automation_studio.hpp"
 #include "runtime/projects/codesys_export.hpp"
 #include "runtime/projects/configuration.hpp"
@@ -205,6 +206,15 @@ void leave_to_projects(std::vector<std::string>& files) {
     });
 }
 
+/// What packages beside the folder's own one have in `src`, where it depends on them.
+void add_packages(std::vector<std::string>& files, const std::string& folder) {
+    for (const fs::path& package : packages_beside(folder)) {
+        std::error_code missing;
+        std::ranges::move(sources_below((package / "src").string(), missing),
+                          std::back_inserter(files));
+    }
+}
+
 }  // namespace
 
 void Project::add(std::shared_ptr<const SourceFile> source) {
@@ -245,6 +255,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     std::erase_if(files, [&](const auto& file) { return is_beside_package(file, folder); });
     leave_to_projects(files);
     std::ranges::sort(files);
+    if (!error) add_packages(files, folder);
     return files;
 }
 

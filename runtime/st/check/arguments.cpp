@@ -6,6 +6,7 @@
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/check/variants.hpp"
+#include "runtime/st/types/parameters.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -129,7 +130,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_constant = parameter.section == Section::in_out && parameter.constant;
     const bool is_read = is_constant || (parameter.section == Section::in_out &&
                                          (is_own_input(*value) || is_lent(*value)));
-    const bool is_taken = argument.is_output || is_output;
+    const bool is_taken = argument.is_output || is_output || is_copied_in_out(parameter);
     const bool is_place = is_variable(*value) || (is_taken && value->kind == E::bit);
     if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {

@@ -23,6 +23,7 @@ const OtherAssertion assertions[] = {
     {"AxUnit.Assert.GreaterThan", "ASSERT_GT", {"left", "right"}, false},
     {"AxUnit.Assert.LessOrEqual", "ASSERT_LE", {"left", "right"}, false},
     {"AxUnit.Assert.GreaterOrEqual", "ASSERT_GE", {"left", "right"}, false},
+    {"AxUnit.Assert.Tolerated", "ASSERT_NEAR", {"expected", "actual", "tolerance"}, true},
     {"AxUnit.ResultFunctions.axunit_Fail", "ASSERT_TRUE", {"message", "file", "line"}, false},
     {"AxUnit.ResultFunctions.axunit_Succeed", "ASSERT_TRUE", {}, false},
     {"ASSERT_EQUAL", "ASSERT_EQ", {"expected", "actual"}, true},

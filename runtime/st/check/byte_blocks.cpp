@@ -3,6 +3,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/variants.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -12,12 +13,16 @@ namespace {
 /// What a function of the prelude takes as bytes, where its caller gives a variable of any type.
 struct ByteBlocks {
     std::string_view function, read, written;
+    std::string_view of_variant = {};  ///< what takes a VARIANT instead
+
+    std::string_view variable() const { return read.empty() ? written : read; }
 };
-constexpr ByteBlocks functions_of_bytes[] = {{"Serialize", "SRC_VARIABLE", ""},
-                                             {"Deserialize", "", "DEST_VARIABLE"},
-                                             {"BLKMOV", "SRCBLK", "DSTBLK"},
-                                             {"UBLKMOV", "SRCBLK", "DSTBLK"},
-                                             {"FILL", "BVAL", "BLK"}};
+constexpr ByteBlocks functions_of_bytes[] = {
+    {"Serialize", "SRC_VARIABLE", "", "serialize_variant"},
+    {"Deserialize", "", "DEST_VARIABLE", "deserialize_variant"},
+    {"BLKMOV", "SRCBLK", "DSTBLK"},
+    {"UBLKMOV", "SRCBLK", "DSTBLK"},
+    {"FILL", "BVAL", "BLK"}};
 
 /// Null: it takes its arguments as all others.
 const ByteBlocks* find_blocks(const Routine& called) {
@@ -83,7 +88,65 @@ std::optional<Seen> see_bytes(Checking& c, Expression* given, bool is_written) {
     return seen;
 }
 
+bool can_be_bytes(const Type& type) {
+    return !type.is_open && type.kind != Kind::text && packed_bits(type, scl) > 0;
+}
+
+/// `IF variable.type_number = number THEN result := call; END_IF`, of what the variable is to.
+Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlocks& blocks,
+                            const Type& type, std::int64_t number) {
+    Routine& routine = *like.routine;
+    Expression *whole = nullptr, *is_it = nullptr;
+    std::vector<Argument> arguments = like.arguments;
+    for (Argument& argument : arguments) {
+        argument.value = make_use(c, like, *find_in(routine.names, argument.name.text));
+        if (!same_name(argument.name.text, blocks.variable())) continue;
+        Expression* place = make_member(c, argument.value, "place");
+        check(c, place);
+        whole = make_target(c, like, make_converted(c, place, pointer_to(c, type)), &type);
+        is_it = make_binary(c, like.place, like.place, Word::equal,
+                            make_member(c, argument.value, "type_number"),
+                            make_constant(c, like, dint_type, {.integer = number}));
+        argument.value = whole;
+    }
+    Expression* call = make_call(c, like, make_function_name(c, *like.operands[0], blocks.function),
+                                 std::move(arguments));
+    Expression* result = make_use(c, like, *routine.result);
+    return make_if(c, like.place, is_it, {make_assignment(c, like.place, result, call)}, {});
+}
+
 }  // namespace
+
+bool take_as_variant(Checking& c, Expression*& e, const Routine& called) {
+    const ByteBlocks* const blocks = find_blocks(called);
+    if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude()) return false;
+    Argument* given = find_called(e->arguments, blocks->variable(), &Argument::name);
+    if (!given || is_hidden(*given->value)) return false;
+    const Type* type = check(c, given->value);
+    if (!type || !(is_variant(*type) || can_be_bytes(*type))) return false;
+    e = make_call(c, *e, make_function_name(c, *e->operands[0], blocks->of_variant), e->arguments);
+    c.serializations.push_back(e);
+    return true;
+}
+
+void write_serializations(Checking& c) {
+    for (const ByteBlocks& blocks : functions_of_bytes) {
+        const auto is_of = [&](const Expression* call) {
+            return call->routine && same_name(call->routine->name, blocks.of_variant);
+        };
+        const auto call = std::ranges::find_if(c.serializations, is_of);
+        if (call == c.serializations.end()) continue;
+        c.routine = (*call)->routine;
+        for (std::size_t i = 0; i < c.types_of_variants.size(); ++i) {
+            const Type& type = *c.types_of_variants[i];
+            if (!can_be_bytes(type)) continue;
+            const auto number = static_cast<std::int64_t>(i) + 1;
+            c.routine->body.push_back(bytes_of_variant(c, **call, blocks, type, number));
+            check(c, c.routine->body.back());
+        }
+    }
+    c.routine = nullptr;
+}
 
 bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
@@ -109,6 +172,7 @@ bool rewrite_bytes(Checking& c, Statement*& s, const Routine& called) {
                    is_written = same_name(argument.name.text, blocks->written);
         if (!argument.is_named() || (!is_read && !is_written) || is_hidden(*argument.value))
             continue;
+        if (const Type* type = check(c, argument.value); type && is_variant(*type)) return false;
         const auto seen = see_bytes(c, argument.value, is_written);
         if (!seen) return true;
         argument.value = seen->bytes;

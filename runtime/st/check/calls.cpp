@@ -16,6 +16,7 @@
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/check/variants.hpp"
 #include "runtime/st/functions/standard.hpp"
+#include "runtime/st/types/parameters.hpp"
 #include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
@@ -207,7 +208,8 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     for (Variable* declared : all_variables(routine)) {
         Variable& variable = *declared;
         const bool due =
-            variable.section == Section::in_out || is_open_array(variable) ||
+            (variable.section == Section::in_out && !is_kept_in_out(variable)) ||
+            is_open_array(variable) ||
             (variable.section == Section::input && !routine.has_instances() &&
              (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
         if (!due || variable.bound_of || std::ranges::find(given, &variable) != given.end())
@@ -429,6 +431,8 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
         const std::string_view name = callee.token.text;
         Routine* routine = c.find_routine(callee.token);
+        if (routine && take_as_variant(c, e, *routine))
+            return check_call(c, e, as_statement, expected);
         if (routine && !routine->type && !is_of_dynamic_memory(name)) {
             if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
                 !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||

@@ -142,8 +142,9 @@ struct Checking {
         Expression* pointer = nullptr;
     };
     std::vector<Deletion> deletions = {};
-    std::vector<const Type*> types_of_variants = {};  ///< that TypeOf asks for, by number
-    Type* statics = nullptr;                          ///< of the global that keep_once() fills
+    std::vector<const Expression*> serializations = {};  ///< calls with a VARIANT
+    std::vector<const Type*> types_of_variants = {};     ///< that TypeOf asks for, by number
+    Type* statics = nullptr;                             ///< of the global that keep_once() fills
     Routine* begin_of_globals = nullptr;  ///< runs before all others; null: nothing is to be done
 
     Routine* routine = nullptr;  ///< that is being checked

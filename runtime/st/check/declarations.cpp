@@ -148,12 +148,20 @@ void begin_anew(Checking& c, Routine& routine, Variable& variable) {
     routine.holds_instance = true;
 }
 
+/// On an S7 what is elementary is given to a call by value.
+bool copies_in_out(const Routine& routine, const Type& type) {
+    const bool is_structured = type.kind == Kind::moment && !type.counts_ns;
+    return &routine.pou->name.place.dialect() == &scl && type.is_scalar() && !type.is_handle() &&
+           !type.is_reference() && type.kind != Kind::interface && !is_structured;
+}
+
 /// A block keeps which axis it was given last. Of a call the variable itself is meant, which a
 /// pointer to it outlives.
 bool is_copied(const Routine& routine, const Type* type) {
     const Source& source = *routine.pou->name.place.source;
     const bool has_pointers = &source.dialect != &scl && !source.is_prelude();
-    return type && type->is_handle() && (routine.has_instances() || !has_pointers);
+    if (!type || !type->is_handle()) return type && copies_in_out(routine, *type);
+    return routine.has_instances() || !has_pointers;
 }
 
 void add_names(const Expression& e, std::vector<std::string_view>& to) {

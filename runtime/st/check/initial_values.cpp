@@ -7,6 +7,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/types/parameters.hpp"
 
 namespace lineshaft::st {
 
@@ -252,7 +253,8 @@ void check_initial_values(Checking& c) {
         // By index: ADR of a constant adds a variable.
         for (std::size_t i = 0; i < routine.variables.size(); ++i) {
             Variable& variable = routine.variables[i];
-            if (variable.initial && variable.section == Section::in_out)
+            if (variable.initial && variable.section == Section::in_out &&
+                !is_kept_in_out(variable))
                 c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
                        "leave ':= ...' out; the caller gives the variable");
             begin_members(c, variable);

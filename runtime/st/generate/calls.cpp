@@ -5,6 +5,7 @@
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/statements.hpp"
 #include "runtime/st/generate/values.hpp"
+#include "runtime/st/types/parameters.hpp"
 
 namespace lineshaft::st {
 
@@ -18,11 +19,11 @@ struct Later {
     bool is_lent = false;     ///< an address
 };
 
-/// A VAR_IN_OUT is given a copy of what is no slot of its own, which is written back behind the
-/// call.
+/// What has a copy in a call, which is written back behind that.
 struct Lent {
     Location at, copy;
     const Type* type = nullptr;
+    const Expression* bits = nullptr;  ///< of a variable, instead of `at`
 };
 
 /// A test sets an output or a local by its name.
@@ -63,8 +64,8 @@ Location kept(Writing& w, const Expression& value) {
     return made;
 }
 
-/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. A copy is
-/// referred to by nothing: ADR of that VAR_IN_OUT is NULL.
+/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. It is a copy
+/// of what is no slot of its own, which is referred to by nothing: ADR of that VAR_IN_OUT is NULL.
 void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
            std::vector<Later>& later, std::vector<Lent>& lent) {
     const bool is_value = value.kind == E::call || value.kind == E::converted;
@@ -84,6 +85,18 @@ void refer(Writing& w, const Location& to, const Variable& variable, const Expre
         later.push_back({reference, w.constant_slot(0)});
     else
         later.push_back({reference, reference_to(w, value), reference_slots});
+}
+
+/// `variable` stands in the frame, and has the value there.
+Lent give_copy(Writing& w, const Location& to, const Variable& variable, const Expression& given) {
+    if (given.kind == E::bit) {
+        store(w, to, value(w, given));
+        return {{}, to, variable.type, &given};
+    }
+    Location at = locate(w, given);
+    if (at.mode != Mode::slot) at = as_address(w, at);
+    write(w, to, at, *variable.type);
+    return {at, to, variable.type};
 }
 
 void give(Writing& w, const std::vector<Later>& later) {
@@ -150,6 +163,11 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
         const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
             refer(w, to, variable, *argument.value, later, lent);
+        } else if (is_copied_in_out(variable)) {
+            const Location at = nested ? Location{Mode::slot, w.new_temporary()} : to;
+            lent.push_back(give_copy(w, at, variable, *argument.value));
+            if (nested) later.push_back({to, at.slot});
+            lent.back().copy = to;
         } else if (!nested) {
             give_value(w, to, type, *argument.value);
         } else if (type.is_scalar()) {
@@ -190,7 +208,11 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
 /// What was lent, and outputs.
 void take(Writing& w, const Location& frame, const Expression& e, const std::vector<Lent>& lent) {
     const Type* callee = e.operands[0] ? e.operands[0]->type : nullptr;
-    for (const Lent& one : lent) write(w, one.at, one.copy, *one.type);
+    for (const Lent& one : lent)
+        if (one.bits)
+            store_bits(w, *one.bits, load(w, one.copy));
+        else
+            write(w, one.at, one.copy, *one.type);
     for (const Argument& argument : e.arguments) {
         const Variable& variable = *argument.variable;
         const bool is_taken = argument.is_output || variable.section == Section::output;

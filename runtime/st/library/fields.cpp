@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/types/elementary.hpp"
+#include "runtime/st/types/parameters.hpp"
 
 namespace lineshaft::st {
 
@@ -89,6 +90,7 @@ class FieldWriter {
         if (variable.pin == Section::output) return Direction::output;
         if (variable.section == Section::input)
             return variable.constant ? Direction::parameter : Direction::input;
+        if (is_kept_in_out(variable)) return Direction::input;
         if (variable.section == Section::in_out) return Direction::in_out;
         return variable.section == Section::output ? Direction::output : Direction::local;
     }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/fields.hpp"
+#include "runtime/st/types/parameters.hpp"
 
 namespace lineshaft::st {
 
@@ -21,7 +22,7 @@ bool is_given(const Variable& variable) {
 bool has_memory(const Variable& variable, Space space) {
     return variable.type && (variable.space == Space::frame || variable.space == space) &&
            !variable.constant && variable.section != Section::temp &&
-           variable.section != Section::in_out;
+           (variable.section != Section::in_out || is_kept_in_out(variable));
 }
 
 bool is_retained(const Variable& variable, bool is_within) {

@@ -15,8 +15,7 @@ constexpr Instead types_of_vendors[] = {
     {" s5time ", "write TIME"},
     {" any ", "write VARIANT, or the type; a block for each"},
     {" pointer ", "pass the variable as VAR_IN_OUT"},
-    {" pid_compact ", "write the controller as a FUNCTION_BLOCK"},
-    {" program_alarm ", "write a BOOL output, and expect it"},
+    {" pid_3step pid_temp cont_c cont_s pulsegen ", "write the controller as a FUNCTION_BLOCK"},
     {" mb_client mb_server ", "serve the machine: lineshaft serve --modbus"},
     {" datalogcreate datalogopen datalogwrite datalogclose datalogclear datalogdelete "
      "datalognewfile ",
@@ -38,7 +37,8 @@ constexpr Instead functions_of_vendors[] = {
     {" get_error get_err_id ", "a fault ends the scan and is the block's output 'error_id'"},
     {" s_move ", "assign the STRING with ':='"},
     {" join ", "write CONCAT(a, b, ...)"},
-    {" topositioningaxisref tosynchronousaxisref tospeedaxisref asaxisref ",
+    {" topositioningaxisref tosynchronousaxisref tospeedaxisref asaxisref aspositioningaxisref "
+     "assynchronousaxisref asspeedaxisref asexternalencoderref ",
      "declare the axis as VAR_IN_OUT of type TO_PositioningAxis: no number of a data block names "
      "one here"},
     {" qry_cint set_cint can_tint set_tint srt_dint ",

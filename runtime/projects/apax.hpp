@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace lineshaft::projects {
+
+/// Packages of SIMATIC AX beside the one in `folder` that its `apax.yml` depends on, and that those
+/// depend on: their folders, each once, by the names that their own `apax.yml` say. Not those that
+/// are installed below it, in `.apax`.
+std::vector<std::filesystem::path> packages_beside(const std::filesystem::path& folder);
+
+}  // namespace lineshaft::projects
