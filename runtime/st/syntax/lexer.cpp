@@ -238,7 +238,7 @@ class Lexer {
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
         if (c == '%' && is_direct()) return read_direct();
-        const bool is_of_ax = at("&&") && &tokens_.source->dialect == &iec;
+        const bool is_of_ax = at("&&") && tokens_.source->dialect.vendor == Vendor::none;
         if (is_of_ax) return at_ += 2, void(add(Word::ampersand));
         for (const Sign& sign : signs()) {
             if (!at(sign.text)) continue;
