@@ -183,7 +183,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     e->place = place;
     e->conversion.is_written = true;
     e->conversion.truncates = e->kind == E::converted && read->truncates;
-    e->conversion.has_sign = target->kind == Kind::text && from.is_integer() &&
+    e->conversion.has_sign = target->kind == Kind::text && from.is_integer() && from.is_signed &&
                              place.dialect().texts_of_integers_have_signs;
     return target;
 }
