@@ -804,6 +804,19 @@ def check_neighbours():
     assert "examples/two/More.st:2:9: error[L0905]" in said and "examples/two/PLC_PRG.st:1:9: error[L0909]" in said, said
     assert said.count("is declared twice") == 1 and "examples/one" not in said, said
 
+    for name, last in (("a", "Up"), ("b", "Left, Right")):
+        value = last.split(", ")[-1]
+        write(f"flat/{name}.st", f"TYPE St : (Idle, {last}); END_TYPE\nPROGRAM Main\nVAR s : St; END_VAR\ns := St#{value};\nEND_PROGRAM\n")
+        write(f"flat/{name}_test.st", f"TEST 'of {name}' VAR m : Main; END_VAR m(); ASSERT_TRUE(m.s = St#{value}); END_TEST\n")
+        write(f"flat/alone_{name}.st", "PROGRAM Alone\nVAR n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\n")
+    for said in (run("check", "flat"), run("check", "flat/a.st", "flat/b.st")):
+        assert "flat/b.st:1:6: warning[L0909]" in said and "error" not in said, said
+    assert "flat/alone_b.st:1:9: warning[L0909]" in run("check", "flat")
+    run("test", "flat")
+    write("flat/c.st", (work / "flat/a.st").read_text().replace("#Up", "#Right"))
+    said = run("check", "flat", code=2)
+    assert "flat/c.st:4:9: error[L0904]" in said and said.count("error[") == 1, said
+
 
 def check_nothing():
     write("nothing/below/notes.txt", "no source\n")
