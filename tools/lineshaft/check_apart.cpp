@@ -7,7 +7,10 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
+#include "runtime/st/syntax/lexer.hpp"
+#include "runtime/st/syntax/parser.hpp"
 #include "tools/lineshaft/once.hpp"
 
 namespace lineshaft {
@@ -29,10 +32,46 @@ void add_if(Once& to, const Diagnostics& found, Wanted wanted) {
     to.add(kept);
 }
 
-/// What one program is: an export, or a folder.
-std::string program_of(const SourceFile& text) {
-    const std::filesystem::path path(text.path);
-    return path.extension() == ".xml" ? text.path : path.parent_path().string();
+std::string folder_of(const SourceFile& text) {
+    return std::filesystem::path(text.path).parent_path().string();
+}
+
+/// Names in small letters.
+struct Declared {
+    std::set<std::string> programs, others;
+};
+
+Declared declared_in(const std::shared_ptr<const SourceFile>& text) {
+    Diagnostics unread;
+    st::Tree tree;
+    st::parse(st::read_tokens(text, unread), tree, unread);
+    Declared found;
+    for (const st::Pou* unit : tree.units) {
+        const bool is_program = unit->kind == st::PouKind::program;
+        (is_program ? found.programs : found.others).insert(lower(unit->name.text));
+    }
+    for (const st::TypeDeclaration& type : tree.types) found.others.insert(lower(type.name.text));
+    return found;
+}
+
+/// Files that are a program each, of those in one folder: several with a PROGRAM declare the same
+/// type or block, or the same PROGRAM and nothing that others of them need.
+std::set<std::string> whole_programs(const Texts& texts, const st::SourcePool& pool) {
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> files;
+    for (const auto& text : texts) {
+        if (!text->excerpts.empty()) continue;
+        const Declared declared = declared_in(text);
+        if (declared.programs.empty()) continue;
+        for (const std::string& name : declared.others)
+            files[{folder_of(*text), name}].insert(text->path);
+        if (!pool.needed_by(text).empty()) continue;
+        for (const std::string& name : declared.programs)
+            files[{folder_of(*text), "PROGRAM " + name}].insert(text->path);
+    }
+    std::set<std::string> whole;
+    for (auto& [name, paths] : files)
+        if (paths.size() > 1) whole.merge(paths);
+    return whole;
 }
 
 /// Files that a text was put together of, and its own.
@@ -68,14 +107,19 @@ Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
     if (std::ranges::none_of(found.list(), is_twice)) return found;
     std::set<std::string> wrong;
     for (const Diagnostic& d : found.list()) wrong.insert(path_of(d));
-    st::SourcePool pool;
-    std::map<std::string, Texts> programs;
+    st::SourcePool pool, shared;
+    for (const auto& text : texts) pool.add(text);
+    const std::set<std::string> whole = whole_programs(texts, pool);
+    std::map<std::string, Texts> programs;  // by the file that is one, or the folder
     std::set<std::string> again;
     for (const auto& text : texts) {
-        pool.add(text);
-        programs[program_of(*text)].push_back(text);
+        if (!whole.contains(text->path)) shared.add(text);
+        const bool is_file =
+            whole.contains(text->path) || std::filesystem::path(text->path).extension() == ".xml";
+        const std::string program = is_file ? text->path : folder_of(*text);
+        programs[program].push_back(text);
         const auto is_wrong = [&](const std::string& file) { return wrong.contains(file); };
-        if (std::ranges::any_of(files_of(*text), is_wrong)) again.insert(program_of(*text));
+        if (std::ranges::any_of(files_of(*text), is_wrong)) again.insert(program);
     }
     Diagnostics out;
     Once once(out);
@@ -84,7 +128,7 @@ Diagnostics without_neighbours(const Texts& texts, const Diagnostics& found) {
         if (!again.contains(program)) continue;
         std::set<std::string> paths;
         for (const auto& text : own) paths.merge(files_of(*text));
-        add_if(once, check_apart(pool, own),
+        add_if(once, check_apart(whole.contains(program) ? shared : pool, own),
                [&](const auto& path) { return paths.contains(path); });
         files.merge(paths);
     }

@@ -154,6 +154,13 @@ bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) 
     for (const std::string_view name : {blocks->read, blocks->written}) {
         const Argument* given = find_called(call.arguments, name, &Argument::name);
         if (name.empty() || (given && is_hidden(*given->value))) continue;
+        if (!given && call.place.dialect().vendor != Vendor::siemens) {
+            c.fail(code::not_declared, call.operands[0]->place,
+                   fmt::format("'{}' is not declared", call.operands[0]->token.text),
+                   fmt::format("add the source that declares it; SCL's is {}(..., {} := ...)",
+                               blocks->function, name));
+            return false;
+        }
         c.fail(code::not_supported, call.operands[0]->place,
                fmt::format("{} stands in a statement of its own, or is assigned", blocks->function),
                fmt::format("name its arguments: {}(..., {} := ...)", blocks->function, name));

@@ -189,8 +189,10 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     Expression& call = *e;
     std::size_t position = 0;
     std::vector<const Variable*> given;
-    const bool is_method_of_ax = routine.owner && &call.place.dialect() == &iec;
-    bool by_name = call.arguments.empty() || is_method_of_ax;  // 6.6.1.4.2
+    const Dialect& dialect = call.place.dialect();
+    const bool may_end_early =
+        dialect.inputs_may_be_left_out || (routine.owner && dialect.vendor == Vendor::none);
+    bool by_name = call.arguments.empty() || may_end_early;  // 6.6.1.4.2
     for (Argument& argument : call.arguments) {
         by_name |= argument.is_named();
         Variable* parameter = find_parameter(c, argument, routine, position++);

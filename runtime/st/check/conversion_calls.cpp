@@ -135,6 +135,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
                       fmt::format("{} takes 1 argument", read->name));
     if (!check_operand(c, e->arguments[0].value, source)) return nullptr;
     Expression* value = e->arguments[0].value;
+    const bool takes_character = !source && (target->is_integer() || target->is_bits());
+    if (takes_character && is_literal_character(*value)) coerce(c, value, char_type);
     const Type& from = *value->type;
     const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
     if (is_text || from.is_pointer()) {
@@ -181,7 +183,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     e->place = place;
     e->conversion.is_written = true;
     e->conversion.truncates = e->kind == E::converted && read->truncates;
-    e->conversion.has_sign = target->kind == Kind::text && from.is_integer() &&
+    e->conversion.has_sign = target->kind == Kind::text && from.is_integer() && from.is_signed &&
                              place.dialect().texts_of_integers_have_signs;
     return target;
 }

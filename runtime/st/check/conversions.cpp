@@ -354,6 +354,11 @@ static std::optional<Wide> only_character(const std::string& text, const Type& t
                             : std::nullopt;
 }
 
+bool is_literal_character(const Expression& e) {
+    return e.place.dialect().literals_are_characters && is_constant(e) && !e.variable &&
+           e.type->kind == Kind::text && !e.type->is_wide && e.constant.text.size() == 1;
+}
+
 bool counts_bits(const Type& from, const Type& to, const Place& place) {
     return place.dialect().bits_count_in_reals && from.kind == Kind::bits && to.is_real();
 }

@@ -17,6 +17,8 @@ bool are_same_pattern(const Type& given, const Type& to);
 bool fits_as_constant(const Expression& e, const Type& to);
 /// CODESYS reads the number in a bit string where a REAL is due, which rounds one of its width.
 bool counts_bits(const Type& from, const Type& to, const Place& place);
+/// `'A'` in SIMATIC AX, which is a CHAR where nothing else is due.
+bool is_literal_character(const Expression& e);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.

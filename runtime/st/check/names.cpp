@@ -13,6 +13,7 @@
 #include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/s5.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -195,8 +196,12 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
         name.quoted &&
         (!may_be_name(name.text) || (near.empty() && place.dialect().quotes_may_enclose_texts));
     if (near.empty() && !is_text && c.may_be_foreign(name)) return nullptr;
+    const std::string_view of_vendor =
+        is_text ? std::string_view() : instead_of_undeclared(name.text, near.empty());
     return c.fail(code::not_declared, place, fmt::format("'{}' is not declared", name.text),
-                  is_text ? "a text stands in '...', a name in \"...\"" : suggest(name.text, near));
+                  !of_vendor.empty() ? std::string(of_vendor)
+                  : is_text          ? "a text stands in '...', a name in \"...\""
+                                     : suggest(name.text, near));
 }
 
 const Type* use(Checking& c, Expression*& e, Variable& variable) {

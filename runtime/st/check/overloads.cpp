@@ -2,6 +2,7 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/check/calls.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/functions/standard.hpp"
 
@@ -78,13 +79,16 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         if (!parameter || !parameter->type) return {};
         if (!argument.value->type) continue;
         if (!is_in_range(*argument.value, *parameter->type)) return {};
-        const auto one = closeness(*parameter, *argument.value->type);
+        const Type& type = *argument.value->type;
+        const bool is_character =
+            parameter->type->is_character && is_literal_character(*argument.value);
+        const auto one = closeness(*parameter, is_character ? char_type : type);
         const bool converts = call.place.dialect().vendor == Vendor::siemens &&
                               parameter->section == Section::input &&
-                              parameter->type->kind == Kind::integer &&
-                              argument.value->type->kind == Kind::integer;
+                              parameter->type->kind == Kind::integer && type.kind == Kind::integer;
         if (!one && !converts) return {};
-        sum += one.value_or(0);
+        const bool is_text = !is_character && is_literal_character(*argument.value);
+        sum += one.value_or(0) - (is_text ? 1 : 0);
     }
     const auto missing =
         static_cast<int>(parameters.size()) - static_cast<int>(call.arguments.size());
@@ -95,7 +99,7 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
 
 bool means_function(Checking& c, const Expression& call, const Routine& method) {
     const Token& name = call.operands[0]->token;
-    if (&call.place.dialect() == &iec) {  // where methods are called by THIS
+    if (call.place.dialect().vendor == Vendor::none) {  // where methods are called by THIS
         const Routine* function = c.find_routine(name);
         if (function && function->is_function() && !function->owner) return true;
     }

@@ -259,8 +259,9 @@ constexpr RealForm real_form(std::uint32_t operand) {
 template <class T>
 void write_real(std::byte* to, T value, RealForm form);
 
-/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. A
-/// whole number may be `16#FF`, and where digits may stand in groups `2#1111_0000`.
+/// As controllers read it: the number at the beginning, behind blanks; 0 where there is none. One
+/// that a double does not hold is infinite or 0. A whole number may be `16#FF`, and where digits
+/// may stand in groups `2#1111_0000`.
 template <class T>
 T number_of_text(const std::byte* from, bool has_groups);
 

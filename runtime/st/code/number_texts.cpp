@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "runtime/st/code/code.hpp"
@@ -111,11 +112,27 @@ int base_of(std::string_view number) {
                                        : 10;
 }
 
+/// More than a text has.
+constexpr int max_digits = 1'000'000;
+
 /// `2#1111_0000` without the signs between its digits.
 std::string_view without_groups(std::string_view text, std::array<char, longest_result>& room) {
     text = text.substr(0, room.size());
     const auto end = std::ranges::remove_copy(text, room.data(), '_').out;
     return {room.data(), static_cast<std::size_t>(end - room.data())};
+}
+
+/// Of a number that no double holds: infinity, or 0 where it is too near to that.
+double beyond_range(std::string_view number) {
+    const std::size_t letter = std::min(number.find_first_of("eE"), number.size());
+    const auto whole = static_cast<double>(std::min(number.find('.'), letter)),
+               first = static_cast<double>(number.find_first_of("123456789"));
+    std::string_view power = number.substr(std::min(letter + 1, number.size()));
+    if (power.starts_with('+')) power.remove_prefix(1);
+    int exponent = power.starts_with('-') ? -max_digits : max_digits;
+    if (power.empty()) exponent = 0;
+    std::from_chars(power.data(), power.data() + power.size(), exponent);
+    return whole - first + exponent > 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
 }  // namespace
@@ -138,7 +155,9 @@ T number_of_text(const std::byte* from, bool has_groups) {
     } else {
         read = std::from_chars(text.data(), text.data() + text.size(), value);
     }
-    if (read.ec != std::errc()) return T{};
+    if constexpr (std::is_floating_point_v<T>)
+        if (read.ec == std::errc::result_out_of_range)
+            value = beyond_range({text.data(), static_cast<std::size_t>(read.ptr - text.data())});
     return is_negative ? -value : value;
 }
 

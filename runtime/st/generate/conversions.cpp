@@ -259,7 +259,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         return convert(w, address_number(w, operand), lint_type, *e.type, false, wanted);
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
-        const Slot groups = e.place.dialect().vendor == Vendor::codesys ? 1 : 0;
+        const Vendor vendor = e.place.dialect().vendor;
+        const Slot groups = vendor == Vendor::codesys || vendor == Vendor::none ? 1 : 0;
         const bool is_s7 = is_of_s7(e);
         if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
         if (e.type->kind == Kind::real) {

@@ -19,8 +19,8 @@ void write_character(Writing& w, const Statement& s) {
     const Slot index = value(w, *s.target->arguments[0].value);
     const Dialect& dialect = s.target->place.dialect();
     Slot room = capacity_of(w, at, *text.type);
-    const std::uint32_t rule = dialect.vendor == Vendor::siemens ? meaning::of_s7
-                               : &dialect == &iec                ? meaning::grows
+    const std::uint32_t rule = dialect.characters_may_be_missing ? meaning::of_s7
+                               : dialect.vendor == Vendor::none  ? meaning::grows
                                                                  : 0;
     if (rule != 0) room = w.emit(Op::or_bits, none, room, w.constant_slot(rule));
     w.put(dialect.texts_are_bytes ? Op::set_text_byte : Op::set_character, from, place, index,

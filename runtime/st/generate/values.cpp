@@ -191,7 +191,7 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
               text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->room()));
     else
         w.put(Op::text_character, to, address, index,
-              text.type->room() | (dialect.vendor == Vendor::siemens ? meaning::of_s7 : 0));
+              text.type->room() | (dialect.characters_may_be_missing ? meaning::of_s7 : 0));
     return to;
 }
 

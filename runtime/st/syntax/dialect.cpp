@@ -18,6 +18,13 @@ const Dialect iec = {.sign_precedes_power = true,
                      .loops_begin_narrowed = true,
                      .references_take_addresses = true};
 
+const Dialect simatic_ax = [] {
+    Dialect made = iec;
+    made.literals_are_characters = made.characters_may_be_missing = true;
+    made.inputs_may_be_left_out = true;
+    return made;
+}();
+
 const Dialect automation_studio = [] {
     Dialect made = iec;
     made.capitals_count = made.dint_is_time = made.bool_is_number = true;
@@ -95,7 +102,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .long_numbers_count_time = true,
                      .zero_divides_to_zero = true,
                      .times_count_ms = true,
-                     .texts_are_windows_1252 = true};
+                     .texts_are_windows_1252 = true,
+                     .characters_may_be_missing = true};
 
 /// `RESOURCE Res0 ON PLC` stands in a line of its own.
 static bool is_of_matiec(std::string_view text) {
@@ -143,6 +151,23 @@ static bool is_of_siemens(std::string_view text) {
     return false;
 }
 
+/// A line is `NAMESPACE Plant.Axes` or `USING System.Timer;`.
+static bool is_of_ax(std::string_view text) {
+    for (const std::string_view word : {"NAMESPACE ", "USING "})
+        for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+            const std::size_t line = text.find_last_of("\r\n", at) + 1;
+            const std::size_t end = std::min(text.find_first_of("\r\n;/(", at), text.size());
+            std::string_view name = text.substr(at, end - at);
+            name.remove_prefix(word.size());
+            name = name.substr(0, name.find_last_not_of(" \t") + 1);
+            const bool is_name = !name.empty() && name.find_first_of(" \t:'\"") == name.npos,
+                       begins_line = text.find_first_not_of(" \t", line) == at,
+                       ends_well = word == "NAMESPACE " || text.substr(end, 1) == ";";
+            if (is_name && begins_line && ends_well) return true;
+        }
+    return false;
+}
+
 const Dialect& dialect_of(std::string_view path, std::string_view text) {
     struct Ending {
         std::string_view ending;
@@ -163,12 +188,14 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
     if (&said == &iec && is_of_matiec(text)) return matiec;
     if (&said == &iec && is_of_codesys(text)) return codesys;
     if (&said == &iec && is_of_siemens(text)) return scl;
+    if (&said == &iec && is_of_ax(text)) return simatic_ax;
     return &said == &codesys && has_bit_of_word(text) ? word_addressed : said;
 }
 
 bool is_plain_text(std::string_view path) {
-    static constexpr std::string_view endings[] = {plain_text, ".iecst", ".iec", ".txt",
-                                                   ".text",    ".il",    ".pou"};
+    static constexpr std::string_view endings[] = {
+        plain_text, ".iecst", ".iec", ".txt", ".text",
+        ".il",      ".pou",   ".plc", ".stl", ".structuredtext"};
     const std::string name = lower(path);
     const auto ends = [&](std::string_view ending) { return name.ends_with(ending); };
     return std::ranges::any_of(endings, ends) && !ends(".scl.txt") && !ends(".exp.txt");

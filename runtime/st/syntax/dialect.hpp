@@ -24,7 +24,7 @@ struct Dialect {
     bool lreal_becomes_real = false;        ///< although a REAL rounds it: a warning
     bool enumerations_are_numbers = false;  ///< a variable's number is a value, also another's
     bool numbers_stand_for_names = false;   ///< 1 for `mcPositiveDirection`, as Siemens counts them
-    bool texts_of_integers_have_signs = false;  ///< INT_TO_STRING(5) is '+5', else '5'
+    bool texts_of_integers_have_signs = false;  ///< INT_TO_STRING(5) is '+5', UINT_TO_STRING(5) '5'
     bool bits_count_in_reals = false;   ///< DWORD_TO_REAL(1) is 1.0, else the REAL of these bits
     bool commas_may_end_lists = false;  ///< `f(a, )`
     bool is_loose = false;              ///< `RETURN(done);`, `;;`, CONCAT(STR1 := a)
@@ -55,21 +55,26 @@ struct Dialect {
     bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
-    bool times_count_ms = false;          ///< a TIME is whole ms in 32 bits, also what is reckoned
-    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8
+    bool times_count_ms = false;           ///< a TIME is whole ms in 32 bits, also what is reckoned
+    bool texts_are_windows_1252 = false;   ///< a letter of 'Größe' is a byte, else UTF-8
+    bool inputs_may_be_left_out = false;   ///< at the end of a call by position
+    bool literals_are_characters = false;  ///< TO_INT('0') is 48, of the CHAR, else 0
+    bool characters_may_be_missing = false;  ///< text[0] is read as $00 and not written, or a fault
 };
 
-/// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the
-/// SCL of Siemens' TIA Portal. `matiec` is what Beremiz and OpenPLC compile, in PLCopen XML and in
-/// text: as loose as CODESYS, with the standard's blocks and texts.
-/// `word_addressed` is CODESYS for devices whose bits are those of words, as WAGO's.
-extern const Dialect iec, automation_studio, codesys, word_addressed, twincat, scl, matiec;
+/// IEC 61131-3:2013, the same as SIMATIC AX compiles it, what B&R declares in files of its own,
+/// CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal. `matiec` is what Beremiz and
+/// OpenPLC compile, in PLCopen XML and in text: as loose as CODESYS, with the standard's blocks and
+/// texts. `word_addressed` is CODESYS for devices whose bits are those of words, as WAGO's.
+extern const Dialect iec, simatic_ax, automation_studio, codesys, word_addressed, twincat, scl,
+    matiec;
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
 /// `.prg` puts together are B&R's, `.EXP`, `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, others
 /// SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name it may say
 /// otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's, with `{attribute
-/// '...'}` CODESYS', with a line that begins with DATA_BLOCK or ORGANIZATION_BLOCK SCL; one in
+/// '...'}` CODESYS', with a line `NAMESPACE x` or `USING x;` SIMATIC AX', with one that begins with
+/// DATA_BLOCK or ORGANIZATION_BLOCK SCL; one in
 /// `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.
 const Dialect& dialect_of(std::string_view path, std::string_view text = {});
 

@@ -32,6 +32,39 @@ std::size_t end_of_section(std::string_view text, std::size_t at, std::string_vi
     return end == text.npos ? end : end + section->last.size();
 }
 
+std::size_t end_of_tools_comment(std::string_view text, std::size_t at) {
+    constexpr std::string_view key = "(*@KEY@:", last = "END_DESCRIPTION";
+    const std::string_view rest = text.substr(at);
+    if (rest.starts_with("(*DBG:")) {
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        const std::size_t end = line.rfind("*)");
+        return at + (end == line.npos ? line.size() : end + 2);
+    }
+    if (!rest.starts_with(key)) return 0;
+    const std::size_t word = rest.find_first_not_of(' ', key.size());
+    const std::size_t end = rest.find(last);
+    if (end == rest.npos || !rest.substr(word).starts_with("DESCRIPTION")) return 0;
+    const std::size_t close = rest.find("*)", end);
+    return close == rest.npos ? 0 : at + close + 2;
+}
+
+std::size_t end_of_foreign_code(std::string_view text, std::size_t at) {
+    if (text.substr(at).starts_with("{{")) {
+        const std::size_t end = text.find("}}", at);
+        return end == text.npos ? end : end + 2;
+    }
+    const std::size_t word = text.find_first_not_of(" \t\r\n", at + 1);
+    if (text[at] != '{' || word == text.npos) return text.npos;
+    const std::size_t behind = text.find_first_of(" \t\r\n{}:'", word);
+    if (!same_name(text.substr(word, behind - word), "external")) return text.npos;
+    std::size_t depth = 0;
+    for (std::size_t end = at; end < text.size(); ++end) {
+        depth += text[end] == '{';
+        if (text[end] == '}' && --depth == 0) return end + 1;
+    }
+    return text.npos;
+}
+
 bool is_title(std::string_view text, std::size_t at, std::string_view word) {
     if (!same_name(word, "title")) return false;
     const std::size_t next = text.find_first_not_of(" \t", at);

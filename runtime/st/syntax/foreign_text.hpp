@@ -12,6 +12,15 @@ namespace lineshaft::st {
 /// none.
 std::size_t end_of_section(std::string_view text, std::size_t at, std::string_view word);
 
+/// Behind a comment at `at` that is none by the language's rules; 0: it is one. Behind a program
+/// OpenPLC has C with its own `*)` for its debugger, line by line; PC WORX and MULTIPROG have free
+/// text between `(*@KEY@:DESCRIPTION*)` and `(*@KEY@:END_DESCRIPTION*)`.
+std::size_t end_of_tools_comment(std::string_view text, std::size_t at);
+
+/// Behind `{{ C }}` of matiec's compilers and `{external C++ }` of STruCpp, in which braces nest,
+/// which a program runs as well without; npos: it is none.
+std::size_t end_of_foreign_code(std::string_view text, std::size_t at);
+
 /// `TITLE = any text`, to the end of its line; `word` ends at `at`.
 bool is_title(std::string_view text, std::size_t at, std::string_view word);
 

@@ -129,7 +129,7 @@ class Lexer {
     /// Stops at the comment's last character.
     void skip_comment() {
         const std::size_t begin = at_;
-        if (at("(*DBG:")) return skip_debug_line();
+        if (const std::size_t end = end_of_tools_comment(text_, at_)) return void(at_ = end - 1);
         const bool standard = at("(*"), translated = at("(/*");
         const std::string_view open = standard ? "(*" : translated ? "(/*" : "/*";
         const std::string_view close = standard ? "*)" : translated ? "*/)" : "*/";
@@ -155,13 +155,6 @@ class Lexer {
              fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
     }
 
-    /// What OpenPLC puts behind a program for its debugger, C with its own `*)`, line by line.
-    void skip_debug_line() {
-        const std::string_view line = text_.substr(at_, text_.find('\n', at_) - at_);
-        const std::size_t end = line.rfind("*)");
-        at_ += end == line.npos ? line.size() : end + 1;
-    }
-
     void too_deep(Place where) {
         tokens_.mistakes.push_back(where.begin);
         out_.add(code::too_deep_or_large, where.mark(),
@@ -170,16 +163,16 @@ class Lexer {
         at_ = text_.size();
     }
 
-    /// `{{ C }}` of matiec's compilers, which a program runs as well without.
     bool skip_foreign_code() {
-        const std::size_t end = at("{{") ? text_.find("}}", at_) : std::string_view::npos;
+        const std::size_t end = end_of_foreign_code(text_, at_);
         if (end == std::string_view::npos) return false;
         if (!std::exchange(has_foreign_code_, true))
             out_.warn(code::not_supported, place(at_, at_ + 2).mark(),
                       "what is written in C is left out",
-                      "between {{ and }} stands what another compiler gives to its own");
-        tokens_.pragmas.push_back({tokens_.tokens.size(), new_line_, place(at_, end + 2)});
-        at_ = end + 1;
+                      at("{{") ? "between {{ and }} stands what another compiler gives to its own"
+                               : "{external ...} is what STruCpp gives to another compiler");
+        tokens_.pragmas.push_back({tokens_.tokens.size(), new_line_, place(at_, end)});
+        at_ = end - 1;
         return true;
     }
 
@@ -238,7 +231,7 @@ class Lexer {
         if (c == '\'') return read_text();
         if (c == '"' || c == '#') return read_marked_name();
         if (c == '%' && is_direct()) return read_direct();
-        const bool is_of_ax = at("&&") && &tokens_.source->dialect == &iec;
+        const bool is_of_ax = at("&&") && tokens_.source->dialect.vendor == Vendor::none;
         if (is_of_ax) return at_ += 2, void(add(Word::ampersand));
         for (const Sign& sign : signs()) {
             if (!at(sign.text)) continue;

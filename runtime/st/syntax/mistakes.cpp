@@ -48,9 +48,29 @@ std::string habit_of_signs(const Cursor& p) {
     return {};
 }
 
+/// What stands in Structured Text of Rockwell and of Schneider's Control Expert alone.
+std::string_view habit_of_vendor(const Cursor& p) {
+    const Word before = p.last().word, behind = p.next().word;
+    const bool touches =
+        p.last().place.end == p.here().place.begin && p.here().place.end == p.next().place.begin;
+    if (!touches) return {};
+    if (p.is(Word::assign) && before == Word::open_bracket && behind == Word::close_bracket)
+        return "this is Rockwell's: write ':='";
+    if (p.is(Word::open_bracket) && before == Word::dot)
+        return "this is Rockwell's: of word.[n] write (SHR(word, n) AND 1) = 1";
+    if (!p.is(Word::colon)) return {};
+    if (before == Word::direct && behind == Word::integer)
+        return "this is Control Expert's: declare an array there, x AT %MW10 : ARRAY[0..4] OF INT";
+    if (before == Word::name && (behind == Word::integer || behind == Word::name))
+        return "this is a module of Rockwell's: declare a variable for it, and name that";
+    return {};
+}
+
 }  // namespace
 
 std::string habit(const Parsing& p) {
+    if (const std::string_view of_vendor = habit_of_vendor(p); !of_vendor.empty())
+        return std::string(of_vendor);
     if (std::string of_signs = habit_of_signs(p); !of_signs.empty()) return of_signs;
     if (p.is_in_body && p.is_name() && find_called(elementary_names, p.last().text))
         return "variables are declared in VAR ... END_VAR";

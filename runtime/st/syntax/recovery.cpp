@@ -159,16 +159,35 @@ void end_statement(Parsing& p) {
          "put a ';' at the end of the statement");
 }
 
+/// `VAR CONSTANT` of `VAR_CONSTANT`, `END_VAR` of `END_VAR_INPUT`: the word that the name goes on
+/// from, and what is meant; empty: it is none.
+static std::pair<std::string, std::string> joined_words(std::string_view name,
+                                                        std::span<const std::string> words) {
+    std::pair<std::string, std::string> found;
+    for (const std::string& word : words) {
+        const bool is_whole = word.starts_with("VAR") || word.starts_with("END_");
+        const bool goes_on = is_whole && name.size() > word.size() && name[word.size()] == '_' &&
+                             same_name(name.substr(0, word.size()), word);
+        if (!goes_on || word.size() < found.first.size()) continue;
+        const std::string rest = upper(name.substr(word.size() + 1));
+        const bool is_modifier = rest == "CONSTANT" || rest == "RETAIN" || rest == "PERSISTENT";
+        found = {word, is_modifier ? fmt::format("{} {}", word, rest) : word};
+    }
+    return found;
+}
+
 bool respell(Parsing& p, std::span<const Word> words) {
     if (p.panic || !p.is(Word::name) || p.here().quoted) return false;
     std::vector<std::string> names;
     for (const Word word : words) names.emplace_back(shown(word));
     const auto near = nearest(p.here().text, names);
-    if (near.empty()) return false;
+    auto [meant, shown_as] = joined_words(p.here().text, names);
+    if (!near.empty()) meant = shown_as = near.front();
+    if (meant.empty()) return false;
     tell(p, code::something_else_expected, p.here().place,
          fmt::format("'{}' is not a word of the language", p.here().text),
-         fmt::format("write {}", near.front()));
-    const auto index = std::ranges::find(names, near.front()) - names.begin();
+         fmt::format("write {}", shown_as));
+    const auto index = std::ranges::find(names, meant) - names.begin();
     p.tokens[p.at].word = words[static_cast<std::size_t>(index)];
     return true;
 }

@@ -61,6 +61,20 @@ constexpr Instead functions_of_vendors[] = {
     {" re_trigr ", "leave it out: 'maximum_cycle_time' says how long a scan may last"},
     {" getinstancename ", "give the name as a VAR_INPUT of type STRING"}};
 
+/// Where nobody declares them.
+constexpr Instead names_of_vendors[] = {
+    {" inc ", "if it is Omron's, write x := x + 1"},
+    {" dec ", "if it is Omron's, write x := x - 1"},
+    {" gettime getmytaskinterval timetonanosec nanosectotime testabit setabit resetabit memcopy "
+     "arymove sizeofary dttostring p_on p_off p_firstrun p_first_runmode ",
+     "this is of Omron's Sysmac Studio: declare a FUNCTION or a variable of this name"},
+    {" cop cps jsr osri osrr tonr tofr rtor gsv ssv ",
+     "this is an instruction of Rockwell's Logix: declare a FUNCTION or a FUNCTION_BLOCK of this "
+     "name"}};
+
+/// What numbers stand behind in the names of devices of Mitsubishi and Keyence.
+constexpr std::string_view devices = " x y m d b w l r sm sd mr dm lr em ";
+
 constexpr Instead inputs_of_vendors[] = {
     {" cam ", "select the cam with MC_CamTableSelect, and give its CamTableID"}};
 
@@ -78,6 +92,17 @@ std::string_view instead_of_type(std::string_view name) {
 
 std::string_view instead_of_function(std::string_view name) {
     return instead_in(functions_of_vendors, name);
+}
+
+std::string_view instead_of_undeclared(std::string_view name, bool may_be_device) {
+    const std::string_view instead = instead_in(names_of_vendors, name);
+    const std::size_t digits = name.find_first_of("0123456789");
+    const bool is_device = may_be_device && instead.empty() && digits != name.npos &&
+                           name.find_first_not_of("0123456789", digits) == name.npos &&
+                           has_word(devices, name.substr(0, digits));
+    return is_device ? "if it is a device of Mitsubishi's or Keyence's controllers, declare it: "
+                       "VAR_GLOBAL M0 : BOOL; D0 : INT; END_VAR"
+                     : instead;
 }
 
 std::string_view instead_of_input(std::string_view name) {

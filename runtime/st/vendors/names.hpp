@@ -89,5 +89,8 @@ const Beginning* find_beginning(std::string_view kind, Vendor vendor);
 std::string_view instead_of_type(std::string_view name);
 std::string_view instead_of_function(std::string_view name);
 std::string_view instead_of_input(std::string_view name);
+/// The same of what nobody declares, which another vendor's controller has: `GetTime`, and `X0`,
+/// where no other name is like it.
+std::string_view instead_of_undeclared(std::string_view name, bool may_be_device);
 
 }  // namespace lineshaft::st
