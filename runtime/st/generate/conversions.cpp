@@ -263,7 +263,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
                                     : w.emit(Op::real_of_text, none, text, groups);
             return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
         }
-        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
+        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, groups);
         if (e.type->is_time()) {
             const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
             return is_whole(e) ? in_whole_units(w, time, *e.type, is_s7, wanted) : time;
