@@ -24,11 +24,12 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     return look_up(w, slot, places, least);
 }
 
-/// In SCL what is beyond the type leaves its lowest bits.
+/// In SCL and CODESYS what is beyond the type leaves its lowest bits.
 Slot nearest(Writing& w, Slot slot, const Type& to, Slot wanted) {
     const auto* source = w.place.source;
-    const bool is_s7 = source && source->dialect.vendor == Vendor::siemens && !source->is_prelude();
-    if (!is_s7) return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    const bool are_left =
+        source && source->dialect.reals_leave_lowest_bits && !source->is_prelude();
+    if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
     if (to.bits == 64) return w.emit(Op::lowest_bits, wanted, slot);
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::lowest_bits, none, slot));
 }

@@ -52,6 +52,7 @@ struct Dialect {
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
     bool real_literals_are_lreal = false;  ///< `i * 0.1` of an INT is an LREAL, else a REAL
     bool loops_look_again = false;         ///< FOR reads its limit and step in each pass, else once
+    bool reals_leave_lowest_bits = false;  ///< REAL_TO_USINT(300.0) is 44, else a fault
     bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
