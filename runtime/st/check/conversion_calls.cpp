@@ -135,6 +135,9 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
                       fmt::format("{} takes 1 argument", read->name));
     if (!check_operand(c, e->arguments[0].value, source)) return nullptr;
     Expression* value = e->arguments[0].value;
+    const bool is_numbered =
+        value->type->is_pointer() && (target->kind == Kind::text || target->is_real());
+    if (is_numbered && !coerce(c, value, ulint_type)) return nullptr;
     const Type& from = *value->type;
     const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
     if (is_text || from.is_pointer()) {

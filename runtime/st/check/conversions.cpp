@@ -66,19 +66,21 @@ void warn_of_check(Checking& c, const Expression& e, const Type& to) {
                     from, to.name));
 }
 
-/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
-/// width or less with another sign.
+/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL; both round an integer of 64
+/// bits. An integer takes one of its width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
     const bool of_dint = from.kind == Kind::integer && from.bits == 32 && is_single(to);
+    const bool of_long =
+        from.kind == Kind::integer && to.kind == Kind::real && takes_long_numbers(e, from);
     const bool is_real = from.kind == Kind::real && is_single(to);
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
     const bool mixes_signs = takes_what_others_refuse(dialect) && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
-        !changes_sign && !mixes_signs) {
+        !of_long && !changes_sign && !mixes_signs) {
         const bool is_unchecked = converts_unchecked(e, to);
         if (is_unchecked) warn_of_check(c, e, to);
         return is_unchecked;
@@ -352,6 +354,11 @@ static std::optional<Wide> only_character(const std::string& text, const Type& t
     }
     return text.size() == 1 ? std::optional<Wide>(static_cast<unsigned char>(text[0]))
                             : std::nullopt;
+}
+
+bool takes_long_numbers(const Expression& e, const Type& from) {
+    return e.place.dialect().vendor == Vendor::codesys && from.kind == Kind::integer &&
+           from.bits == 64;
 }
 
 bool counts_bits(const Type& from, const Type& to, const Place& place) {

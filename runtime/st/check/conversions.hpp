@@ -15,6 +15,8 @@ bool is_single(const Type& type);
 bool are_same_pattern(const Type& given, const Type& to);
 /// A constant of another type loses nothing.
 bool fits_as_constant(const Expression& e, const Type& to);
+/// CODESYS takes a LINT or ULINT for a REAL or LREAL, which rounds it.
+bool takes_long_numbers(const Expression& e, const Type& from);
 /// CODESYS reads the number in a bit string where a REAL is due, which rounds one of its width.
 bool counts_bits(const Type& from, const Type& to, const Place& place);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant

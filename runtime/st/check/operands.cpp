@@ -92,6 +92,9 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     } else {
         common = common_type(a, b);
         if (!common && mixes_signs_of_64(e)) common = &ulint_type;
+        const bool is_long = (takes_long_numbers(e, a.plain()) && b.plain().kind == Kind::real) ||
+                             (takes_long_numbers(e, b.plain()) && a.plain().kind == Kind::real);
+        if (!common && is_long) common = &lreal_type;
         if (!common && counts_bits(a, b, e.place)) common = &b;
         if (!common && counts_bits(b, a, e.place)) common = &a;
     }
