@@ -81,11 +81,10 @@ bool check_operand(Checking& c, Expression*& value, const Type* source) {
     return true;
 }
 
-/// Between dates and times only some; in CODESYS also of a TIME since 1970.
+/// Between dates and times only some; in CODESYS all: each is what has passed since 1970, or since
+/// midnight.
 bool is_time_conversion(const Type& from, const Type& to, const Dialect& dialect) {
-    const bool counts_from_1970 = dialect.times_count_ms && dialect.vendor != Vendor::siemens;
-    return (counts_from_1970 && (from.kind == Kind::time || to.kind == Kind::time)) ||
-           (from.kind == Kind::moment && to.is_date()) ||
+    return dialect.dates_count_seconds || (from.kind == Kind::moment && to.is_date()) ||
            (from.kind == Kind::date && to.kind == Kind::moment) ||
            (from.kind == Kind::clock && to.kind == Kind::time) ||
            (from.kind == Kind::time && to.kind == Kind::clock) || same_type(from, to);

@@ -79,7 +79,9 @@ const Type* check_time(Checking& c, Expression*& slot) {
             return c.fail(code::value_out_of_range, e.place,
                           fmt::format("'{}' is not a {}", e.place.text(), type->name),
                           "write D#2020-02-29, TOD#12:30:15.25 or DT#2020-02-29-12:30:15");
-        e.constant.integer = *value;
+        const bool is_whole = e.place.dialect().dates_count_seconds && !type->counts_ns;
+        const Wide unit = !is_whole ? 1 : type->kind == Kind::clock ? 1'000'000 : 1'000'000'000;
+        e.constant.integer = *value / unit * unit;
         return type;
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);

@@ -53,9 +53,10 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     return nearest(w, slot, to, wanted);
 }
 
-/// Of a DT its DATE and its TOD; all others keep their ns.
+/// Of a DT and a DATE its DATE and its TOD; all others keep their ns.
 Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
-    if (from.kind != Kind::moment || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
+    const bool has_day = from.kind == Kind::moment || from.kind == Kind::date;
+    if (!has_day || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
     const Slot day = w.constant_slot(86'400'000'000'000);
     const Slot rest = w.emit(Op::mod_lint, none, slot, day);
     const Slot above = w.emit(Op::add_lint, none, rest, day);
@@ -179,14 +180,16 @@ bool is_whole(const Expression& e) {
            (!from.is_time() || from.counts_ns || (from.kind != to.kind && !is_of_s7(e)));
 }
 
-/// A TIME begins again at 2^32 ms, in SCL after 2^31 - 1 with the least one.
+/// It begins again at 2^32 ms or s, a TIME of SCL after 2^31 - 1 with the least one.
 Slot in_whole_units(Writing& w, Slot slot, const Type& to, bool has_sign, Slot wanted) {
-    const Slot unit = w.constant_slot(to.kind == Kind::date     ? 86'400'000'000'000U
-                                      : to.kind == Kind::moment ? 1'000'000'000U
-                                                                : 1'000'000U);
+    const Slot unit = w.constant_slot(unit_of(to));
     Slot count = w.emit(Op::div_lint, none, slot, unit);
-    if (to.kind == Kind::time)
+    if (to.kind == Kind::time || !has_sign)
         count = w.emit(of_type(Op::wrap_sint, integer_type(32, has_sign)), none, count);
+    if (to.kind == Kind::date) {
+        const Slot day = w.constant_slot(of_days / of_seconds);
+        count = w.emit(Op::mul_lint, none, w.emit(Op::div_lint, none, count, day), day);
+    }
     return w.emit(Op::mul_lint, wanted, count, unit);
 }
 

@@ -56,8 +56,11 @@ struct Dialect {
     bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
-    bool times_count_ms = false;          ///< a TIME is whole ms in 32 bits, also what is reckoned
-    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8
+    bool times_count_ms = false;       ///< a TIME is whole ms in 32 bits, also what is reckoned
+    bool dates_count_seconds = false;  ///< a DT and a DATE are whole seconds, a TOD whole ms, in 32
+                                       ///< bits, also what is reckoned
+    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8, as ever in
+                                          ///< a WSTRING
 };
 
 /// IEC 61131-3:2013, what B&R declares in files of its own, CODESYS and Beckhoff's TwinCAT, and the

@@ -59,8 +59,10 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
         fmt::format_to(to, "{:04}-{:02}-{:02}", static_cast<int>(day.year()),
                        static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
     if (kind == Kind::date) return;
-    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "",
-                   clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    const auto hours =
+        kind == Kind::clock ? floor<std::chrono::hours>(nanoseconds(since_1970)) : clock.hours();
+    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "", hours.count(),
+                   clock.minutes().count(), clock.seconds().count());
     const auto rest = clock.subseconds().count();
     if (rest % 1'000'000 != 0)
         fmt::format_to(to, ".{:09}", rest);
