@@ -143,8 +143,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
         if (!is_text && !coerce(c, value, *target)) return nullptr;
         e = value;
         if (!is_text || from.is_wide == target->is_wide) return e->type;
-        return is_constant(*e) ? become(c, e, *target, {.text = e->constant.text})
-                               : become_converted(c, e, *target);
+        recode(c, e, *target);
+        return target;
     }
     const Dialect& dialect = value->place.dialect();
     if (!is_conversion(from, *target, dialect))

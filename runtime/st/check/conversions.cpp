@@ -309,6 +309,16 @@ bool may_become(Checking& c, const Expression& e, const Type& to) {
     return is_same_pattern(e.type->plain(), to) || rounds(c, e, to);
 }
 
+void recode(Checking& c, Expression*& e, const Type& to) {
+    if (!is_constant(*e)) {
+        become_converted(c, e, to);
+        return;
+    }
+    const std::string& text = e->constant.text;
+    const bool has_bytes = e->place.dialect().texts_are_windows_1252;
+    become(c, e, to, {.text = !has_bytes ? text : to.is_wide ? widened(text) : narrowed(text)});
+}
+
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
     if (coerce_dtl(c, e, to) || coerce_s5time(c, e, to)) return true;
@@ -318,6 +328,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
+        if (from.is_wide != to.is_wide && e->place.dialect().texts_are_windows_1252)
+            recode(c, e, from.is_wide ? string_type : wide_string_type);
         const std::string& text = e->constant.text;
         if (is_constant(*e) && kept_bytes(text, to.room()) < text.size())
             c.warn(code::value_out_of_range, e->place,

@@ -27,6 +27,9 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to);
 /// the other, as CODESYS has it, which so takes values of another enumeration, too; false where
 /// nothing was done.
 bool coerce_enumeration(Checking& c, Expression*& e, const Type& to);
+/// Makes a text one of `to`, of the other width: in dialects whose STRING has a byte a character,
+/// by its characters.
+void recode(Checking& c, Expression*& e, const Type& to);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.

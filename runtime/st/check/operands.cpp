@@ -18,6 +18,9 @@ void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
 }
 
 void unite_texts(Checking& c, Expression*& a, Expression*& b) {
+    const bool are_texts = a->type->kind == Kind::text && b->type->kind == Kind::text;
+    if (are_texts && a->type->is_wide != b->type->is_wide)
+        coerce(c, a->type->is_wide ? b : a, wide_string_type);
     Expression*& character = a->type->is_character ? a : b;
     Expression*& text = a->type->is_character ? b : a;
     if (!character->type->is_character || text->type->kind != Kind::text) return;

@@ -203,6 +203,8 @@ std::string_view text_at(const std::byte* place);
 
 /// `room` of a text is bytes, or units (types/wide_text.hpp). False: it was cut.
 bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
+/// The text of a WSTRING as that of a STRING of bytes, or back, where there is room for units.
+void recode_text(std::byte* to, const std::byte* from, std::uint32_t room);
 bool is_too_long(const std::byte* text, std::uint64_t room);
 std::uint64_t length_of_text(const std::byte* text, bool in_units);
 

@@ -181,6 +181,7 @@
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
     OP(text_copy, text, "rrr-", if (!copy_text(target(U(a)), target(U(b)), U(c))) frames.note_cut(BEHIND)) \
     OP(text_append, text, "rrdn", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1), d)) frames.note_cut(BEHIND)) \
+    OP(text_recode, text, "rrn-", recode_text(target(U(a)), target(U(b)), c))                        \
     OP(text_length, text, "wrn-", put(a, length_of_text(target(U(b)), c != 0)))                      \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \

@@ -55,7 +55,8 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true,
                          .times_count_ms = true,
-                         .dates_count_seconds = true};
+                         .dates_count_seconds = true,
+                         .texts_are_windows_1252 = true};
 
 const Dialect word_addressed = [] {
     Dialect made = codesys;
@@ -76,7 +77,7 @@ const Dialect matiec = [] {
     made.addresses_of_sizes_are_apart = true;
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.real_literals_are_lreal = made.reals_leave_lowest_bits = false;
-    made.times_count_ms = made.dates_count_seconds = false;
+    made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.reckons_in = 32;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;

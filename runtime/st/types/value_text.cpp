@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/syntax/literals.hpp"
 
@@ -129,8 +130,11 @@ std::string printable(std::string_view text) {
     std::string out;
     while (!text.empty()) {
         const Utf8Character c = first_character(text);
-        if (!c.valid || c.code < 0x20)
-            out += fmt::format("${:02X}", static_cast<unsigned char>(text.front()));
+        const auto byte = static_cast<unsigned char>(text.front());
+        if (c.code < 0x20 || (!c.valid && of_windows_1252(byte) == 0xFFFD))
+            out += fmt::format("${:02X}", byte);
+        else if (!c.valid)
+            add_character(out, of_windows_1252(byte));
         else
             out += text.substr(0, c.bytes);
         text.remove_prefix(c.bytes);
