@@ -1646,6 +1646,29 @@ def check_axes_that_are_referred_to():
     run("run", "referred.yaml", "--quiet", "--no-native")
 
 
+def check_unions_of_codesys():
+    """A UNION of CODESYS stands beside its units, as one of its additions."""
+    union = ('<union name="Both"><variable name="whole"><type><DINT/></type></variable><variable name="parts"><type><array>'
+             '<dimension lower="1" upper="4"/><baseType><BYTE/></baseType></array></type></variable></union>')
+    unit = ('<pou name="P" pouType="program"><interface><localVars><variable name="both"><type><derived name="Both"/></type></variable>'
+            '<variable name="low"><type><BYTE/></type></variable></localVars></interface>'
+            f'{st("both.whole := 16#01020304; low := both.parts[1];")}</pou>')
+    data = "".join(f'<data name="{CODESYS}{kind}" handleUnknown="implementation">{text}</data>'
+                   for kind, text in (("union", union), ("pou", unit)))
+    write("union.xml", '<?xml version="1.0" encoding="utf-8"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0200"><types><dataTypes/><pous/></types>'
+          f'{addition("application", f"<resource name=@Application@><addData>{data}</addData></resource>".replace("@", chr(34)))}</project>\n')
+    assert "ok  union.xml" in run("check", "union.xml")
+    run("new", "union", "--from", "union.xml")
+    write("union.yaml", (work / "union.yaml").read_text() + "expect:\n  - {at: end, P.low: 4}\n")
+    run("run", "union.yaml", "--quiet")
+
+
+def check_encrypted():
+    write("shut/Shut.plcproj", b"TcEncryptedFile~s\0\xf5dhJ")
+    told = run("check", "shut", code=2)
+    assert "Shut.plcproj:1:1" in told and "is encrypted by TwinCAT" in told, told
+
+
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
     twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
@@ -1760,6 +1783,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_vendored_tcunit()
     check_suites_of_lists()
     check_axes_that_are_referred_to()
+    check_unions_of_codesys()
+    check_encrypted()
     check_foreign_names()
     check_hostile()
 print("projects of others at the prompt: fine")

@@ -77,6 +77,7 @@ class PlcopenProject {
         globals_of(data);
         for (const pugi::xml_node type : data.children("dataType"))
             add(type, &PlcopenText::add_type);
+        for (const pugi::xml_node type : data.children("union")) add(type, &PlcopenText::add_union);
         for (const pugi::xml_node pou : data.children("pou")) add(pou, &PlcopenText::add_pou);
         for (const pugi::xml_node interface : data.children("Interface"))
             add(interface, &PlcopenText::add_interface_of_blocks);

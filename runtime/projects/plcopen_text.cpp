@@ -441,6 +441,16 @@ void PlcopenText::add_type(pugi::xml_node type) {
     write(";\nEND_TYPE\n", type);
 }
 
+void PlcopenText::add_union(pugi::xml_node type) {
+    if (add_plain(type)) return;
+    add_attributes(type);
+    write("TYPE ", type);
+    file_.copy(text_, type.attribute("name"));
+    write(" : UNION\n", type);
+    for (const pugi::xml_node variable : type.children("variable")) add_variable(variable);
+    write("END_UNION\nEND_TYPE\n", type);
+}
+
 void PlcopenText::add_globals(pugi::xml_node list) {
     if (add_plain(list)) return;
     for (const pugi::xml_node part : lists_of(list)) {

@@ -16,6 +16,7 @@ class PlcopenText {
     void add_pou(pugi::xml_node pou);
     void add_interface_of_blocks(pugi::xml_node interface);  ///< INTERFACE, an addition of CODESYS
     void add_type(pugi::xml_node type);
+    void add_union(pugi::xml_node type);  ///< of CODESYS
     void add_globals(pugi::xml_node list);
 
     /// What could not be read of it is the text's mistakes, which who compiles it tells.

@@ -141,6 +141,11 @@ std::unique_ptr<XmlFile> XmlFile::parse(std::shared_ptr<const SourceFile> file, 
     };
     if (count('<') > limits.tags) return refuse(limits.tags, "tags");
     if (count('=') > limits.attributes) return refuse(limits.attributes, "attributes");
+    if (file->text.starts_with("TcEncryptedFile")) {
+        out.add(code::not_xml, start, "this file is encrypted by TwinCAT, as what it belongs to",
+                "have its owner take the protection away: TwinCAT's Software Protection");
+        return nullptr;
+    }
     const std::size_t zero = file->text.find('\0');
     if (zero != std::string::npos) {
         out.add(code::not_xml, PlacedFile(file).mark({zero, zero}), "this file is not a text",

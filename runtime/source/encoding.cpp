@@ -27,10 +27,6 @@ constexpr char32_t windows_1252[] = {
     0x2039, 0x0152, 0xFFFD, 0x017D, 0xFFFD, 0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
     0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0xFFFD, 0x017E, 0x0178};
 
-char32_t of_windows_1252(unsigned char byte) {
-    return byte >= 0x80 && byte < 0xA0 ? windows_1252[byte - 0x80] : byte;
-}
-
 /// Half a pair of surrogates, and half a unit at the end, are U+FFFD.
 std::string of_utf16(std::string_view bytes, bool big_endian) {
     const auto unit = [&](std::size_t at) -> char32_t {
@@ -100,6 +96,10 @@ bool begins_with_unit(std::string_view written) {
            text.find("\nnetwork") == text.npos;
 }
 
+char32_t of_windows_1252(unsigned char byte) {
+    return byte >= 0x80 && byte < 0xA0 ? windows_1252[byte - 0x80] : byte;
+}
+
 bool is_structured_text(const std::filesystem::path& file) {
     static constexpr std::string_view extensions[] = {
         ".st", ".scl", ".s7dcl", ".udt", ".db", ".exp", ".typ", ".var", ".fun", ".iecst", ".iec"};
@@ -133,15 +133,14 @@ std::string as_utf8(std::string bytes) {
 std::string in_windows_1252(std::string_view text) {
     std::string bytes;
     for (; !text.empty(); text.remove_prefix(first_character(text).bytes)) {
-        const Utf8Character character = first_character(text);
-        const auto* const known = std::ranges::find(windows_1252, character.code);
-        const auto place = known - std::begin(windows_1252);
-        if (character.code >= 0xA0 && character.code <= 0xFF)
-            bytes += static_cast<char>(character.code);
-        else if (character.code >= 0xA0 && character.valid && known != std::end(windows_1252))
-            bytes += static_cast<char>(0x80 + place);
+        const auto [code, size, is_valid] = first_character(text);
+        const auto* const known = std::ranges::find(windows_1252, code);
+        if (!is_valid || code < 0x80 || (code >= 0xA0 && code <= 0xFF))
+            bytes += is_valid ? static_cast<char>(code) : text.front();
+        else if (code != 0xFFFD && known != std::end(windows_1252))
+            bytes += static_cast<char>(0x80 + (known - std::begin(windows_1252)));
         else
-            bytes += text.substr(0, character.bytes);
+            bytes += '?';
     }
     return bytes;
 }

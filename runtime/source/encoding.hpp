@@ -21,8 +21,11 @@ bool has_name_of_any_text(const std::filesystem::path& file);
 /// character of UTF-8 is one of Windows-1252.
 std::string as_utf8(std::string bytes);
 
-/// A text of UTF-8 as bytes of Windows-1252. What that has not stays as it is.
+/// A text of UTF-8 as bytes of Windows-1252. What that has not is '?'.
 std::string in_windows_1252(std::string_view text);
+
+/// The character that a byte is there; U+FFFD of the five that are none.
+char32_t of_windows_1252(unsigned char byte);
 
 /// What a name may have beside letters, digits and `_` of ASCII: as XML 1.0 has it, without signs.
 bool is_national_letter(char32_t code);

@@ -81,11 +81,10 @@ bool check_operand(Checking& c, Expression*& value, const Type* source) {
     return true;
 }
 
-/// Between dates and times only some; in CODESYS also of a TIME since 1970.
+/// Between dates and times only some; in CODESYS all: each is what has passed since 1970, or since
+/// midnight.
 bool is_time_conversion(const Type& from, const Type& to, const Dialect& dialect) {
-    const bool counts_from_1970 = dialect.times_count_ms && dialect.vendor != Vendor::siemens;
-    return (counts_from_1970 && (from.kind == Kind::time || to.kind == Kind::time)) ||
-           (from.kind == Kind::moment && to.is_date()) ||
+    return dialect.dates_count_seconds || (from.kind == Kind::moment && to.is_date()) ||
            (from.kind == Kind::date && to.kind == Kind::moment) ||
            (from.kind == Kind::clock && to.kind == Kind::time) ||
            (from.kind == Kind::time && to.kind == Kind::clock) || same_type(from, to);
@@ -137,14 +136,17 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     Expression* value = e->arguments[0].value;
     const bool takes_character = !source && (target->is_integer() || target->is_bits());
     if (takes_character && is_literal_character(*value)) coerce(c, value, char_type);
+    const bool is_numbered =
+        value->type->is_pointer() && (target->kind == Kind::text || target->is_real());
+    if (is_numbered && !coerce(c, value, ulint_type)) return nullptr;
     const Type& from = *value->type;
     const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
     if (is_text || from.is_pointer()) {
         if (!is_text && !coerce(c, value, *target)) return nullptr;
         e = value;
         if (!is_text || from.is_wide == target->is_wide) return e->type;
-        return is_constant(*e) ? become(c, e, *target, {.text = e->constant.text})
-                               : become_converted(c, e, *target);
+        recode(c, e, *target);
+        return target;
     }
     const Dialect& dialect = value->place.dialect();
     if (!is_conversion(from, *target, dialect))

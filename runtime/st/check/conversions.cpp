@@ -66,102 +66,27 @@ void warn_of_check(Checking& c, const Expression& e, const Type& to) {
                     from, to.name));
 }
 
-/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
-/// width or less with another sign.
+/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL; both round an integer of 64
+/// bits. An integer takes one of its width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
     const bool of_dint = from.kind == Kind::integer && from.bits == 32 && is_single(to);
+    const bool of_long =
+        from.kind == Kind::integer && to.kind == Kind::real && takes_long_numbers(e, from);
     const bool is_real = from.kind == Kind::real && is_single(to);
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
     const bool mixes_signs = takes_what_others_refuse(dialect) && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
-        !changes_sign && !mixes_signs) {
+        !of_long && !changes_sign && !mixes_signs) {
         const bool is_unchecked = converts_unchecked(e, to);
         if (is_unchecked) warn_of_check(c, e, to);
         return is_unchecked;
     }
     warn_of_loss(c, e, to);
     return true;
-}
-
-/// As it is written: of a pin of the catalogue, `MC_Home.HomingMode`, without that.
-std::string first_value(const Checking& c, const Type& type) {
-    const std::string& value = type.values.front();
-    const bool is_of_pin = c.catalog.find(type.name.substr(0, type.name.find('.'))) != nullptr;
-    return is_of_pin ? value : fmt::format("{}#{}", type.name, value);
-}
-
-/// Siemens gives a number where PLCopen has a name: `Direction := 1`.
-bool coerce_number(Checking& c, Expression*& e, const Type& to) {
-    if (!is_constant(*e)) return convert(c, e, to);
-    const Wide number = e->constant.integer;
-    const bool exists = number >= 0 && number < static_cast<Wide>(to.of_number.size());
-    const std::int64_t value = exists ? to.of_number[static_cast<std::size_t>(number)]
-                               : to.all_others_as_last ? to.of_number.back()
-                                                       : -1;
-    if (value < 0)
-        return c.fail(code::value_out_of_range, e->place,
-                      fmt::format("{} has nothing for the number {}", to.name, to_string(number)),
-                      fmt::format("write one of its values, such as {}", first_value(c, to)));
-    return become(c, e, to, {.integer = value});
-}
-
-/// A number that no value has, which CODESYS lets a variable have: here a fault where it is
-/// reached, and nothing that a variable begins with.
-bool convert_to_none(Checking& c, Expression*& e, const Type& to) {
-    if (c.beginning.variable) {
-        c.fail(code::value_out_of_range, e->place,
-               fmt::format("no value of {} is {}", to.name, to_string(e->constant.integer)),
-               "declare a value for it, or the variable as an INT");
-        return become(c, e, to, {});
-    }
-    c.warn(code::value_out_of_range, e->place,
-           fmt::format("no value of {} is {}, and a fault comes where that is assigned", to.name,
-                       to_string(e->constant.integer)),
-           "declare a value for it");
-    e = make_converted(c, e, to);
-    return true;
-}
-
-/// An enumeration's value and its number stand for each other where the one is known to be one of
-/// the other, as CODESYS has it, which so takes values of another enumeration, too; false where
-/// nothing was done.
-bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
-    const Type& from = *e->type;
-    if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
-        const auto holds = [&](std::int64_t number) {
-            return number >= smallest(to) && number <= largest(to);
-        };
-        const bool fits = is_constant(*e)
-                              ? holds(from.numbers[static_cast<std::size_t>(e->constant.integer)])
-                              : std::ranges::all_of(from.numbers, holds);
-        if (fits) convert(c, e, to);
-        return fits;
-    }
-    const bool is_other = from.has_numbers && from.name != to.name;
-    const bool has_number = is_other || from.kind == Kind::bits;
-    const bool are_numbers = e->place.dialect().enumerations_are_numbers && !to.is_strict;
-    if (has_number && to.has_numbers && are_numbers) {
-        Expression* number = e;
-        convert(c, number, lint_type);
-        if (!coerce_enumeration(c, number, to)) return false;
-        e = number;
-        return true;
-    }
-    if (!to.has_numbers || !from.is_integer()) return false;
-    if (!is_constant(*e)) {
-        constexpr std::int64_t most_numbers = 4096;
-        const auto [least, most] = std::ranges::minmax(to.numbers);
-        const bool fits = are_numbers && most - least < most_numbers;
-        if (fits) convert(c, e, to);
-        return fits;
-    }
-    const auto it = std::ranges::find(to.numbers, e->constant.integer);
-    if (it == to.numbers.end()) return are_numbers && c.routine && convert_to_none(c, e, to);
-    return become(c, e, to, {.integer = it - to.numbers.begin()});
 }
 
 /// `positive` and `ramp_in` of SoftMotion are mcPositiveDirection and mcRampIn of the catalogue:
@@ -359,6 +284,11 @@ bool is_literal_character(const Expression& e) {
            e.type->kind == Kind::text && !e.type->is_wide && e.constant.text.size() == 1;
 }
 
+bool takes_long_numbers(const Expression& e, const Type& from) {
+    return e.place.dialect().vendor == Vendor::codesys && from.kind == Kind::integer &&
+           from.bits == 64;
+}
+
 bool counts_bits(const Type& from, const Type& to, const Place& place) {
     return place.dialect().bits_count_in_reals && from.kind == Kind::bits && to.is_real();
 }
@@ -384,6 +314,16 @@ bool may_become(Checking& c, const Expression& e, const Type& to) {
     return is_same_pattern(e.type->plain(), to) || rounds(c, e, to);
 }
 
+void recode(Checking& c, Expression*& e, const Type& to) {
+    if (!is_constant(*e)) {
+        become_converted(c, e, to);
+        return;
+    }
+    const std::string& text = e->constant.text;
+    const bool has_bytes = e->place.dialect().texts_are_windows_1252;
+    become(c, e, to, {.text = !has_bytes ? text : to.is_wide ? widened(text) : narrowed(text)});
+}
+
 bool coerce(Checking& c, Expression*& e, const Type& to) {
     if (!e->type) return false;
     if (coerce_dtl(c, e, to) || coerce_s5time(c, e, to)) return true;
@@ -393,6 +333,8 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return coerce_reference(c, e, to);
     const Type& from = *e->type;
     if (from.kind == Kind::text && to.kind == Kind::text) {
+        if (from.is_wide != to.is_wide && e->place.dialect().texts_are_windows_1252)
+            recode(c, e, from.is_wide ? string_type : wide_string_type);
         const std::string& text = e->constant.text;
         if (is_constant(*e) && kept_bytes(text, to.room()) < text.size())
             c.warn(code::value_out_of_range, e->place,

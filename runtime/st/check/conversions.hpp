@@ -15,10 +15,23 @@ bool is_single(const Type& type);
 bool are_same_pattern(const Type& given, const Type& to);
 /// A constant of another type loses nothing.
 bool fits_as_constant(const Expression& e, const Type& to);
+/// CODESYS takes a LINT or ULINT for a REAL or LREAL, which rounds it.
+bool takes_long_numbers(const Expression& e, const Type& from);
 /// CODESYS reads the number in a bit string where a REAL is due, which rounds one of its width.
 bool counts_bits(const Type& from, const Type& to, const Place& place);
 /// `'A'` in SIMATIC AX, which is a CHAR where nothing else is due.
 bool is_literal_character(const Expression& e);
+/// As it is written: of a pin of the catalogue, `MC_Home.HomingMode`, without that.
+std::string first_value(const Checking& c, const Type& type);
+/// Siemens gives a number where PLCopen has a name: `Direction := 1`.
+bool coerce_number(Checking& c, Expression*& e, const Type& to);
+/// An enumeration's value and its number stand for each other where the one is known to be one of
+/// the other, as CODESYS has it, which so takes values of another enumeration, too; false where
+/// nothing was done.
+bool coerce_enumeration(Checking& c, Expression*& e, const Type& to);
+/// Makes a text one of `to`, of the other width: in dialects whose STRING has a byte a character,
+/// by its characters.
+void recode(Checking& c, Expression*& e, const Type& to);
 /// Makes `e`, which has a type, a value of `to` where the language does that by itself: a constant
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.

@@ -1,8 +1,10 @@
 #include "runtime/st/syntax/literals.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -79,7 +81,9 @@ const Type* check_time(Checking& c, Expression*& slot) {
             return c.fail(code::value_out_of_range, e.place,
                           fmt::format("'{}' is not a {}", e.place.text(), type->name),
                           "write D#2020-02-29, TOD#12:30:15.25 or DT#2020-02-29-12:30:15");
-        e.constant.integer = *value;
+        const bool is_whole = e.place.dialect().dates_count_seconds && !type->counts_ns;
+        const Wide unit = !is_whole ? 1 : type->kind == Kind::clock ? 1'000'000 : 1'000'000'000;
+        e.constant.integer = *value / unit * unit;
         return type;
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
@@ -105,11 +109,22 @@ const Type* check_time(Checking& c, Expression*& slot) {
     return is_long ? &long_time_type(e.place) : &time_type;
 }
 
+/// What stands in quotes, in bytes as the dialect has them. What has none is told.
+std::string written_text(Checking& c, const Expression& e) {
+    if (!e.place.dialect().texts_are_windows_1252) return std::string(e.token.text);
+    std::string bytes = in_windows_1252(e.token.text);
+    if (std::ranges::count(bytes, '?') != std::ranges::count(e.token.text, '?'))
+        c.warn(
+            code::value_out_of_range, e.place,
+            "a STRING has bytes of Windows-1252 here, and a character that is none of them is '?'",
+            "a WSTRING has it: write \"...\"");
+    return bytes;
+}
+
 const Type* check_text(Checking& c, Expression& e) {
-    const std::string written = e.place.dialect().texts_are_windows_1252
-                                    ? in_windows_1252(e.token.text)
-                                    : std::string(e.token.text);
-    const auto text = read_text(written, e.token.quoted);
+    const bool is_wide = e.token.quoted && has_wide_texts(e.place);
+    const auto text =
+        read_text(is_wide ? std::string(e.token.text) : written_text(c, e), e.token.quoted);
     if (!text)
         return c.fail(code::value_out_of_range, e.place,
                       "'$' is not followed by one of its characters",
@@ -118,7 +133,6 @@ const Type* check_text(Checking& c, Expression& e) {
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("the text has {} bytes", text->size()),
                       "a text has at most 32767 bytes");
-    const bool is_wide = e.token.quoted && has_wide_texts(e.place);
     e.constant.text = is_wide ? text_of_units(units_of(*text)) : *text;
     return is_wide ? &wide_string_type : &string_type;
 }

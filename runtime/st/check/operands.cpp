@@ -18,6 +18,9 @@ void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
 }
 
 void unite_texts(Checking& c, Expression*& a, Expression*& b) {
+    const bool are_texts = a->type->kind == Kind::text && b->type->kind == Kind::text;
+    if (are_texts && a->type->is_wide != b->type->is_wide)
+        coerce(c, a->type->is_wide ? b : a, wide_string_type);
     Expression*& character = a->type->is_character ? a : b;
     Expression*& text = a->type->is_character ? b : a;
     if (!character->type->is_character || text->type->kind != Kind::text) return;
@@ -92,6 +95,9 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     } else {
         common = common_type(a, b);
         if (!common && mixes_signs_of_64(e)) common = &ulint_type;
+        const bool is_long = (takes_long_numbers(e, a.plain()) && b.plain().kind == Kind::real) ||
+                             (takes_long_numbers(e, b.plain()) && a.plain().kind == Kind::real);
+        if (!common && is_long) common = &lreal_type;
         if (!common && counts_bits(a, b, e.place)) common = &b;
         if (!common && counts_bits(b, a, e.place)) common = &a;
     }

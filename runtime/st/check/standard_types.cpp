@@ -388,6 +388,9 @@ const Type* check_texts(Checking& c, Expression& call) {
                                       is_text ? "a STRING" : "a whole number", describe(type)));
         if (type.is_any() && !coerce(c, value, lint_type)) return nullptr;
     }
+    for (Argument& argument : call.arguments)
+        if (is_wide && argument.value->type->kind == Kind::text)
+            coerce(c, argument.value, wide_string_type);
     return f.result != Generic::text ? &int_type : is_wide ? &wide_string_type : &string_type;
 }
 

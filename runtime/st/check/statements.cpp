@@ -291,6 +291,20 @@ void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
     slot = loop;
 }
 
+/// A counter of CODESYS that ends at a limit of its type is never beyond it.
+void note_endless(Checking& c, const Statement& s, const Type& type) {
+    const Expression& limit = *s.limit;
+    if (!limit.place.dialect().loops_look_again || !limit.type || !is_constant(limit)) return;
+    const bool is_down = s.step && is_constant(*s.step) && s.step->constant.integer < 0;
+    if (limit.constant.integer != (is_down ? smallest(type.plain()) : largest(type.plain())))
+        return;
+    c.warn(code::value_out_of_range, limit.place,
+           fmt::format("on the controller this loop never ends: {} is the {} {}, and the counter "
+                       "begins again behind it",
+                       limit.place.text(), is_down ? "least" : "largest", type.plain().name),
+           "count in a wider type; it ends here");
+}
+
 void check_for(Checking& c, Statement*& slot) {
     const Type* type = check(c, slot->target);
     if (type && type->has_numbers && slot->place.dialect().enumerations_are_numbers) {
@@ -309,6 +323,7 @@ void check_for(Checking& c, Statement*& slot) {
         if (check(c, s.limit, type)) coerce(c, s.limit, type->plain());
         const Type& step = type->bits < 64 ? lint_type : type->plain();  // downwards, too
         if (s.step && check(c, s.step, &step)) coerce(c, s.step, step);
+        note_endless(c, s, *type);
     }
     if (s.step && s.step->type && s.step->kind == E::constant && s.step->constant.integer == 0)
         c.fail(code::value_out_of_range, s.step->place, "a loop with step 0 does not end");

@@ -17,6 +17,23 @@ const Type* become_time(Checking& c, Expression*& e, bool is_long) {
     return !e->type || is_long || !counts_ms ? e->type : convert(c, e, time_type);
 }
 
+/// What is reckoned of dates in ns is of the type again that is due, whole seconds or ms in 32
+/// bits.
+const Type* become_date(Checking& c, Expression*& e, const Type& type) {
+    static constexpr std::string_view long_ones[] = {"ldate", "ltod", "ldt"};
+    const auto place = static_cast<std::size_t>(type.kind) - static_cast<std::size_t>(Kind::date);
+    const bool is_whole = e->place.dialect().dates_count_seconds && !type.counts_ns;
+    e->type = is_whole ? find_elementary(long_ones[place]) : &type;
+    fold(c, e);
+    return is_whole ? convert(c, e, type) : e->type;
+}
+
+/// Of a TIME beside a DT whole seconds count there.
+void become_whole_seconds(Checking& c, Expression*& time, const Type& moment) {
+    if (time->place.dialect().dates_count_seconds && !moment.counts_ns)
+        convert(c, time, moment_type);
+}
+
 /// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side.
 const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
@@ -31,10 +48,12 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
         return refuse_operands(
             c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
     if (distance) return become_time(c, e, a.counts_ns);
-    const bool within_day = moves && a.kind == Kind::clock;
-    e->type = joins || within_day ? &moment_type : &a;
+    if (moves && a.kind == Kind::moment) become_whole_seconds(c, e->operands[1], a);
+    const bool within_day =
+        moves && a.kind == Kind::clock && !e->place.dialect().dates_count_seconds;
+    if (!within_day) return become_date(c, e, joins ? moment_type : a);
+    e->type = &moment_type;
     fold(c, e);
-    if (!within_day) return e->type;
     constexpr Wide day = 86'400'000'000'000;
     const Wide time = (e->constant.integer % day + day) % day;
     e = is_constant(*e) ? make_constant(c, *e, clock_type, {.integer = time})

@@ -31,9 +31,10 @@ constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
 }  // namespace
 
-std::uint64_t truth_of_text(const std::byte* from) {
+std::uint64_t truth_of_text(const std::byte* from, bool is_strict) {
     const auto is_letter = [](char a, char b) { return upper(a) == b; };
     const std::string_view text = text_at(from);
+    if (is_strict) return text == "TRUE" || text == "true" ? 1 : 0;
     return text == "1" || std::ranges::equal(text, std::string_view("TRUE"), is_letter) ? 1 : 0;
 }
 

@@ -203,6 +203,8 @@ std::string_view text_at(const std::byte* place);
 
 /// `room` of a text is bytes, or units (types/wide_text.hpp). False: it was cut.
 bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
+/// The text of a WSTRING as that of a STRING of bytes, or back, where there is room for units.
+void recode_text(std::byte* to, const std::byte* from, std::uint32_t room);
 bool is_too_long(const std::byte* text, std::uint64_t room);
 std::uint64_t length_of_text(const std::byte* text, bool in_units);
 
@@ -270,7 +272,8 @@ T number_of_text(const std::byte* from, bool has_groups);
 std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
 double s7_real_of_text(const std::byte* from);
 
-std::uint64_t truth_of_text(const std::byte* from);
+/// Of 'TRUE' in any letters and of '1'; `is_strict`: of 'TRUE' and 'true' alone, as CODESYS has it.
+std::uint64_t truth_of_text(const std::byte* from, bool is_strict);
 
 /// TRUE or FALSE.
 void write_truth(std::byte* to, bool value);

@@ -181,6 +181,7 @@
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
     OP(text_copy, text, "rrr-", if (!copy_text(target(U(a)), target(U(b)), U(c))) frames.note_cut(BEHIND)) \
     OP(text_append, text, "rrdn", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1), d)) frames.note_cut(BEHIND)) \
+    OP(text_recode, text, "rrn-", recode_text(target(U(a)), target(U(b)), c))                        \
     OP(text_length, text, "wrn-", put(a, length_of_text(target(U(b)), c != 0)))                      \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
     OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
@@ -201,7 +202,7 @@
     OP(text_of_bits, text, "rr--", write_bits(target(U(a)), U(b)))                                   \
     OP(text_of_ten_digits, text, "rr--", write_ten_digits(target(U(a)), R(b)))                       \
     OP(text_of_parts, text, "rr--", write_time_in_parts(target(U(a)), I(b)))                         \
-    OP(truth_of_text, text, "wr--", put(a, truth_of_text(target(U(b)))))                             \
+    OP(truth_of_text, text, "wrn-", put(a, truth_of_text(target(U(b)), c != 0)))                     \
     OP(time_of_text, text, "wrn-", put(a, time_of_text(c, target(U(b)))))                            \
     LINESHAFT_ST_EXACT(OP, signed, std::int64_t) LINESHAFT_ST_EXACT(OP, unsigned, std::uint64_t)      \
     OP(from_bcd, integer, "wr--", if (const auto n = from_bcd(U(b))) put(a, *n); else FAIL(out_of_range)) \

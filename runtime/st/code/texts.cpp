@@ -17,6 +17,14 @@ bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
     return length == whole;
 }
 
+void recode_text(std::byte* to, const std::byte* from, std::uint32_t room) {
+    const std::string text =
+        (room & of_units) != 0 ? widened(text_at(from)) : narrowed(text_at(from));
+    const std::size_t kept = kept_bytes(text, room);
+    std::memcpy(to + 8, text.data(), kept);
+    set_word(to, 0, kept);
+}
+
 /// As `append_text`: first and count are of units.
 static bool append_units(std::byte* to, const std::byte* from, std::int64_t first,
                          std::int64_t count, std::uint32_t room) {

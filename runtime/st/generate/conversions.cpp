@@ -24,11 +24,12 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     return look_up(w, slot, places, least);
 }
 
-/// In SCL what is beyond the type leaves its lowest bits.
+/// In SCL and CODESYS what is beyond the type leaves its lowest bits.
 Slot nearest(Writing& w, Slot slot, const Type& to, Slot wanted) {
     const auto* source = w.place.source;
-    const bool is_s7 = source && source->dialect.vendor == Vendor::siemens && !source->is_prelude();
-    if (!is_s7) return w.emit(of_type(Op::round_sint, to), wanted, slot);
+    const bool are_left =
+        source && source->dialect.reals_leave_lowest_bits && !source->is_prelude();
+    if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
     if (to.bits == 64) return w.emit(Op::lowest_bits, wanted, slot);
     return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::lowest_bits, none, slot));
 }
@@ -52,9 +53,10 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     return nearest(w, slot, to, wanted);
 }
 
-/// Of a DT its DATE and its TOD; all others keep their ns.
+/// Of a DT and a DATE its DATE and its TOD; all others keep their ns.
 Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
-    if (from.kind != Kind::moment || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
+    const bool has_day = from.kind == Kind::moment || from.kind == Kind::date;
+    if (!has_day || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
     const Slot day = w.constant_slot(86'400'000'000'000);
     const Slot rest = w.emit(Op::mod_lint, none, slot, day);
     const Slot above = w.emit(Op::add_lint, none, rest, day);
@@ -180,16 +182,18 @@ bool is_whole(const Expression& e) {
            (!from.is_time() || from.counts_ns || (from.kind != to.kind && !is_of_s7(e)));
 }
 
-/// A TIME begins again at 2^32 ms, in SCL after 2^31 - 1 with the least one.
+/// It begins again at 2^32 ms or s, a TIME of SCL after 2^31 - 1 with the least one.
 Slot in_whole_units(Writing& w, Slot slot, const Type& from, const Type& to, bool has_sign,
                     Slot wanted) {
-    const Slot unit = w.constant_slot(to.kind == Kind::date     ? 86'400'000'000'000U
-                                      : to.kind == Kind::moment ? 1'000'000'000U
-                                                                : 1'000'000U);
+    const Slot unit = w.constant_slot(unit_of(to));
     const bool is_unsigned = from.is_unsigned_64() && from.is_time();
     Slot count = w.emit(is_unsigned ? Op::div_ulint : Op::div_lint, none, slot, unit);
-    if (to.kind == Kind::time)
+    if (to.kind == Kind::time || !has_sign)
         count = w.emit(of_type(Op::wrap_sint, integer_type(32, has_sign)), none, count);
+    if (to.kind == Kind::date) {
+        const Slot day = w.constant_slot(of_days / of_seconds);
+        count = w.emit(Op::mul_lint, none, w.emit(Op::div_lint, none, count, day), day);
+    }
     return w.emit(Op::mul_lint, wanted, count, unit);
 }
 
@@ -268,7 +272,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
                                     : w.emit(Op::real_of_text, none, text, groups);
             return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
         }
-        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text);
+        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, groups);
         if (e.type->is_time()) {
             const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
             return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;

@@ -60,8 +60,27 @@ std::optional<Op> text_op_of_matiec(const Type& from) {
     return {};
 }
 
+/// The characters of one are units, those of the other bytes.
+bool is_recoded(const Expression& e) {
+    const Type& from = *e.operands[0]->type;
+    return e.kind == E::converted && from.kind == Type::Kind::text &&
+           from.is_wide != e.type->is_wide && e.place.dialect().texts_are_windows_1252;
+}
+
+Slot recoded_text(Writing& w, const Expression& e) {
+    const Type& from = *e.operands[0]->type;
+    const std::uint32_t length =
+        from.is_open ? static_cast<std::uint32_t>(longest_result_of_codesys) : from.length;
+    const std::uint32_t bytes = e.type->is_wide ? 3 * length : length;
+    const Slot given = text_address(w, *e.operands[0]),
+               made = w.emit(Op::set_address, none, w.new_temporary(1 + (bytes + 7) / 8));
+    w.put(Op::text_recode, made, given, e.type->is_wide ? length | of_units : length);
+    return made;
+}
+
 Slot text_conversion(Writing& w, const Expression& e) {
     const Expression& from = *e.operands[0];
+    if (is_recoded(e)) return recoded_text(w, e);
     if (from.type->kind == Type::Kind::text) return text_address(w, from);
     Slot number = value(w, from);
     const Slot kept = number;
@@ -114,7 +133,7 @@ NewText new_text(Writing& w, bool is_wide) {
 }
 
 Slot text_before(Writing& w, const Expression& e, const Expression& later) {
-    if (e.kind == E::converted && e.operands[0]->type->kind == Type::Kind::text)
+    if (e.kind == E::converted && e.operands[0]->type->kind == Type::Kind::text && !is_recoded(e))
         return text_before(w, *e.operands[0], later);
     const Slot from = text_address(w, e);
     const bool is_variable = e.kind != E::constant && e.kind != E::call && e.kind != E::converted;

@@ -25,7 +25,7 @@ namespace {
 void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const SourceFile* tests) {
     bool uses_standard = false;
     std::set<const BlockType*> used;
-    LibraryNames libraries(standard);
+    LibraryNames libraries(standard, to.libraries);
     for (const auto& source : to.sources) {
         for (const Diagnostic& mistake : source->mistakes) out.add(mistake);
         const bool is_tests = source.get() == tests;

@@ -10,7 +10,7 @@ namespace lineshaft::st {
 /// What sources are compiled to, with all that it refers to: so it is not moved.
 struct Compiled {
     std::vector<std::shared_ptr<const SourceFile>> sources;
-    std::vector<LibraryReference> missing_libraries;  ///< that a project refers to
+    std::vector<LibraryReference> libraries, missing_libraries;  ///< that a project refers to
     Tree tree;
     Checked checked;
     Generated generated;

@@ -43,7 +43,8 @@ std::optional<Library> compile(const std::vector<std::shared_ptr<const SourceFil
     made->sources = sources;
     made->tree.addresses = options.addresses;
     for (const LibraryReference& reference : options.references)
-        if (!is_here(standard, reference.name)) made->missing_libraries.push_back(reference);
+        (is_here(standard, reference.name) ? made->libraries : made->missing_libraries)
+            .push_back(reference);
     const CodeOptions code_options{.overflow_faults = options.overflow_faults,
                                    .counted = options.times.has_value()};
     const bool is_compiled = compile(*made, standard, out, code_options);

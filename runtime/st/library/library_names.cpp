@@ -134,7 +134,10 @@ NameSet declared_namespaces(const Tree& tree) {
 
 }  // namespace
 
-LibraryNames::LibraryNames(const Catalog& catalog) : catalog_(catalog), index_(index_of(catalog)) {}
+LibraryNames::LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references)
+    : catalog_(catalog), index_(index_of(catalog)) {
+    for (const LibraryReference& reference : references) references_.insert(reference.name);
+}
 
 std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file) {
     std::vector<std::string_view> names;
@@ -315,6 +318,11 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
         return pins_of(*file, name) == 0 || (is_softmotion && in_twincat);
     });
     if (files.empty()) return nullptr;
+    const auto is_referred_to = [&](const LibraryFile* f) {
+        return references_.contains(f->library);
+    };
+    if (std::ranges::any_of(files, is_referred_to))
+        std::erase_if(files, std::not_fn(is_referred_to));
     const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name).value_or(0); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });

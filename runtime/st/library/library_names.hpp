@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/model/catalog.hpp"
+#include "runtime/model/library_reference.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 #include "runtime/st/syntax/tree.hpp"
 
@@ -26,14 +27,16 @@ namespace lineshaft::st {
 ///     that the catalogue's block has;
 ///   - for a name that a taken file uses: of its own library, if that has it.
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
-/// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
-/// block that has nothing of what they name of theirs is not meant, nor SoftMotion's in a file of
-/// TwinCAT's. Names of a library that is not open, and of helpers, which begin with a small letter,
-/// are not looked for, nor other names in SCL, nor what is the name of a variable everywhere. A
-/// library whose namespace the sources declare themselves is theirs.
+/// pins, or members, that the sources name of it, then one that is taken anyway, then the first; of
+/// those alone that the project refers to, where there is one. A block that has nothing of what
+/// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's. Names of a library
+/// that is not open, and of helpers, which begin with a small letter, are not looked for, nor other
+/// names in SCL, nor what is the name of a variable everywhere. A library whose namespace the
+/// sources declare themselves is theirs.
 class LibraryNames {
   public:
-    explicit LibraryNames(const Catalog& catalog);
+    /// `references` are those that a project has to libraries.
+    LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references);
 
     /// Those that a source says.
     void note_libraries(const Tokens& tokens);
@@ -69,6 +72,7 @@ class LibraryNames {
 
     const Catalog& catalog_;
     const Index& index_;
+    NameSet references_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
     std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,
         of_siemens_;                            ///< as libraries write them

@@ -58,9 +58,12 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .reckons_in = 64,
                          .real_literals_are_lreal = true,
                          .loops_look_again = true,
+                         .reals_leave_lowest_bits = true,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true,
-                         .times_count_ms = true};
+                         .times_count_ms = true,
+                         .dates_count_seconds = true,
+                         .texts_are_windows_1252 = true};
 
 const Dialect word_addressed = [] {
     Dialect made = codesys;
@@ -71,6 +74,7 @@ const Dialect word_addressed = [] {
 const Dialect twincat = [] {
     Dialect made = codesys;
     made.addresses_count = AddressCount::bytes;
+    made.reals_leave_lowest_bits = false;
     return made;
 }();
 
@@ -79,8 +83,8 @@ const Dialect matiec = [] {
     made.vendor = Vendor::matiec;
     made.addresses_of_sizes_are_apart = true;
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
-    made.real_literals_are_lreal = false;
-    made.times_count_ms = false;
+    made.real_literals_are_lreal = made.reals_leave_lowest_bits = false;
+    made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.reckons_in = 32;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;
@@ -100,6 +104,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .dint_is_time = true,
                      .reals_have_exponents = true,
                      .long_numbers_count_time = true,
+                     .reals_leave_lowest_bits = true,
                      .zero_divides_to_zero = true,
                      .times_count_ms = true,
                      .texts_are_windows_1252 = true,

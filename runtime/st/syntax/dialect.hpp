@@ -52,13 +52,17 @@ struct Dialect {
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
     bool real_literals_are_lreal = false;  ///< `i * 0.1` of an INT is an LREAL, else a REAL
     bool loops_look_again = false;         ///< FOR reads its limit and step in each pass, else once
+    bool reals_leave_lowest_bits = false;  ///< REAL_TO_USINT(300.0) is 44, else a fault
     bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
     bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
-    bool times_count_ms = false;           ///< a TIME is whole ms in 32 bits, also what is reckoned
-    bool texts_are_windows_1252 = false;   ///< a letter of 'Größe' is a byte, else UTF-8
-    bool inputs_may_be_left_out = false;   ///< at the end of a call by position
-    bool literals_are_characters = false;  ///< TO_INT('0') is 48, of the CHAR, else 0
+    bool times_count_ms = false;       ///< a TIME is whole ms in 32 bits, also what is reckoned
+    bool dates_count_seconds = false;  ///< a DT and a DATE are whole seconds, a TOD whole ms, in 32
+                                       ///< bits, also what is reckoned
+    bool texts_are_windows_1252 = false;  ///< a letter of 'Größe' is a byte, else UTF-8, as ever in
+                                          ///< a WSTRING
+    bool inputs_may_be_left_out = false;     ///< at the end of a call by position
+    bool literals_are_characters = false;    ///< TO_INT('0') is 48, of the CHAR, else 0
     bool characters_may_be_missing = false;  ///< text[0] is read as $00 and not written, or a fault
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/elementary.hpp"
@@ -59,8 +60,10 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
         fmt::format_to(to, "{:04}-{:02}-{:02}", static_cast<int>(day.year()),
                        static_cast<unsigned>(day.month()), static_cast<unsigned>(day.day()));
     if (kind == Kind::date) return;
-    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "",
-                   clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+    const auto hours =
+        kind == Kind::clock ? floor<std::chrono::hours>(nanoseconds(since_1970)) : clock.hours();
+    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "", hours.count(),
+                   clock.minutes().count(), clock.seconds().count());
     const auto rest = clock.subseconds().count();
     if (rest % 1'000'000 != 0)
         fmt::format_to(to, ".{:09}", rest);
@@ -127,8 +130,11 @@ std::string printable(std::string_view text) {
     std::string out;
     while (!text.empty()) {
         const Utf8Character c = first_character(text);
-        if (!c.valid || c.code < 0x20)
-            out += fmt::format("${:02X}", static_cast<unsigned char>(text.front()));
+        const auto byte = static_cast<unsigned char>(text.front());
+        if (c.code < 0x20 || (!c.valid && of_windows_1252(byte) == 0xFFFD))
+            out += fmt::format("${:02X}", byte);
+        else if (!c.valid)
+            add_character(out, of_windows_1252(byte));
         else
             out += text.substr(0, c.bytes);
         text.remove_prefix(c.bytes);

@@ -23,7 +23,8 @@ void add_time(fmt::memory_buffer& to, Type::Kind kind, Wide nanoseconds, bool is
 /// What stands behind the '#' of a literal of a kind with a time, in ns; empty if it is none.
 std::optional<Wide> read_time(std::string_view text, Type::Kind kind);
 
-/// With `$E4` for a byte that is no UTF-8, `$0A` for a new line.
+/// In UTF-8: a byte that belongs to no character of it is one of Windows-1252, `$81` where that has
+/// none; `$0A` for a new line.
 std::string printable(std::string_view text);
 
 /// `'it$'s'`

@@ -65,6 +65,18 @@ std::size_t count_units(std::string_view text) {
     return count;
 }
 
+std::string narrowed(std::string_view text) {
+    std::string bytes;
+    for (const char16_t unit : units_of(text)) bytes += unit > 0xFF ? '?' : static_cast<char>(unit);
+    return bytes;
+}
+
+std::string widened(std::string_view bytes) {
+    std::string text;
+    for (const char byte : bytes) add_character(text, static_cast<unsigned char>(byte));
+    return text;
+}
+
 std::size_t kept_bytes(std::string_view text, std::uint64_t room) {
     if ((room & of_units) == 0) return std::min<std::uint64_t>(text.size(), room);
     std::size_t kept = 0;

@@ -14,6 +14,11 @@ std::u16string units_of(std::string_view text);
 std::string text_of_units(std::u16string_view units);
 std::size_t count_units(std::string_view text);
 
+/// The same text as that of a STRING whose characters are bytes, ISO 8859-1, and back. What no byte
+/// is, is '?'.
+std::string narrowed(std::string_view text);
+std::string widened(std::string_view bytes);
+
 /// How many bytes of the text a variable keeps that has room for so many units, or bytes.
 inline constexpr std::uint32_t of_units = std::uint32_t{1} << 31;  ///< in a number of room
 std::size_t kept_bytes(std::string_view text, std::uint64_t room);

@@ -184,3 +184,20 @@ TEST_CASE("names that nobody has may be of libraries that are not here", "[st][l
     CHECK(apart.render().find("a.st:1:19: error[L0904]") != std::string::npos);
     CHECK(apart.render().find("L0927") == std::string::npos);
 }
+
+TEST_CASE("of several libraries one that the project refers to is meant", "[st][libraries]") {
+    const auto project = file("a.plcproj", "one\n");
+    const auto compiled_with = [&](const std::string& library, const std::string& value) {
+        Diagnostics out;
+        st::Options options;
+        options.references = {{library, {project, 1, 1}}};
+        const auto source =
+            file("a.EXP", "PROGRAM p VAR d : MC_Direction; END_VAR d := MC_Direction." + value +
+                              "; END_PROGRAM\n");
+        st::compile({source}, standard_blocks(), out, options);
+        return out.render();
+    };
+    CHECK(compiled_with("Tc2_MC2", "MC_Positive_Direction") == "");
+    CHECK(compiled_with("SM3_Basic", "positive") == "");
+    CHECK(compiled_with("SM3_Basic", "MC_Positive_Direction").find("L0904") != std::string::npos);
+}
