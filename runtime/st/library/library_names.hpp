@@ -55,7 +55,7 @@ class LibraryNames {
   private:
     void note(const Token& name);
     void note_extended(const Token& name);
-    void note_names(const Tree& tree, bool are_users);
+    void note_names(const Tree& tree);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
     std::string_view block_of(const Declaration& declared) const;
@@ -69,7 +69,8 @@ class LibraryNames {
 
     const Catalog& catalog_;
     const Index& index_;
-    std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
+    std::size_t types_ = 0, pous_ = 0, expressions_ = 0,
+                declarations_ = 0;  ///< that were looked at
     std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,
         of_siemens_;                            ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
