@@ -66,12 +66,14 @@ void warn_of_check(Checking& c, const Expression& e, const Type& to) {
                     from, to.name));
 }
 
-/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL. An integer takes one of its
-/// width or less with another sign.
+/// A REAL loses of a DINT what is above 2^24, and rounds an LREAL; CODESYS takes 64 bits for one,
+/// too. An integer takes one of its width or less with another sign.
 bool rounds(Checking& c, const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const Dialect& dialect = e.place.dialect();
-    const bool of_dint = from.kind == Kind::integer && from.bits == 32 && is_single(to);
+    const bool of_long = from.bits == 64 && to.is_real() && dialect.is_loose;
+    const bool of_dint =
+        from.kind == Kind::integer && ((from.bits == 32 && is_single(to)) || of_long);
     const bool is_real = from.kind == Kind::real && is_single(to);
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&

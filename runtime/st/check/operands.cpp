@@ -49,6 +49,17 @@ bool mixes_signs_of_64(const Expression& e) {
            (a.is_unsigned_64() || b.is_unsigned_64());
 }
 
+/// An integer of 64 bits and a real number, which has not all of its digits: CODESYS takes both for
+/// LREALs.
+bool mixes_long_and_real(const Expression& e) {
+    const Type &a = e.operands[0]->type->plain(), &b = e.operands[1]->type->plain();
+    const auto is_long = [](const Type& type) {
+        return type.kind == Kind::integer && type.bits == 64;
+    };
+    return e.place.dialect().is_loose &&
+           ((is_long(a) && b.kind == Kind::real) || (is_long(b) && a.kind == Kind::real));
+}
+
 /// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
 /// what is expected, or a signed one. Null if there is none, or none is needed.
 const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected) {
@@ -92,6 +103,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     } else {
         common = common_type(a, b);
         if (!common && mixes_signs_of_64(e)) common = &ulint_type;
+        if (!common && mixes_long_and_real(e)) common = &lreal_type;
         if (!common && counts_bits(a, b, e.place)) common = &b;
         if (!common && counts_bits(b, a, e.place)) common = &a;
     }

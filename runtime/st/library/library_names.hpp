@@ -29,8 +29,9 @@ namespace lineshaft::st {
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first. A
 /// block that has nothing of what they name of theirs is not meant, nor SoftMotion's in a file of
 /// TwinCAT's. Names of a library that is not open, and of helpers, which begin with a small letter,
-/// are not looked for, nor other names in SCL, nor what is the name of a variable everywhere. A
-/// library whose namespace the sources declare themselves is theirs.
+/// are not looked for, nor other names in SCL, nor what is the name of a variable of the sources,
+/// or of the library's file that is read. A library whose namespace the sources declare themselves
+/// is theirs.
 class LibraryNames {
   public:
     explicit LibraryNames(const Catalog& catalog);
