@@ -148,6 +148,9 @@ def check_new_traces():
     signals = "[Main_x.position, Main_x.velocity, Main_y.position, Main_y.velocity, Main.scans]"
     assert f"trace: {{task: main, signals: {signals}}}\n" in text, text
     run("run", "--quiet", "traced.yaml", "--trace", "traced.csv")
+    write("bare.st", "PROGRAM Main\n;\nEND_PROGRAM\n")
+    run("new", "bare", "--from", "bare.st")
+    assert "--trace" not in (work / "bare.yaml").read_text()
 
 
 def check_page():
@@ -1033,6 +1036,11 @@ def check_mapp_motion():
     write("motion.yaml", (work / "motion.yaml").read_text() + "expect:\n  - {at: end, gFirst.position: 20 mm}\n  - {at: end, gSecond.position: 5 mm}\n  - {at: end, P.step: 4}\n"
           "  - {at: end, P.is_connected: true}\n  - {at: end, P.is_sector: true}\n  - {at: end, P.status.StandStill: true}\n")
     run("run", "motion.yaml", "--quiet")
+    shutil.copytree(work / "Motion", work / "NamedAsType")
+    (work / "NamedAsType/Logical/P").rename(work / "NamedAsType/Logical/Axis")
+    run("new", "named_as_type", "--from", "NamedAsType")
+    write("named_as_type.yaml", (work / "named_as_type.yaml").read_text() + "expect:\n  - {at: end, gFirst.position: 20 mm}\n  - {at: end, Axis.step: 4}\n")
+    run("run", "named_as_type.yaml", "--quiet")
     write("Motion/Logical/Libraries/MpAxis/binary.lby",
           '<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>MpAxis.fun</File></Files></Library>\n')
     write("Motion/Logical/Libraries/MpAxis/MpAxis.typ", "TYPE\n\tMpAxisBasicParType : STRUCT\n\t\tPosition : LREAL;\n\t\tHome : USINT;\n\tEND_STRUCT;\nEND_TYPE\n")

@@ -29,10 +29,17 @@ void construct(Instance& block) {
     block.type->construct(block.image.data());
 }
 
+/// Of the sources, or else of the catalogue; beside a program `Axis` its `axis` is meant as that.
+const BlockType* type_called(const Resolving& to, std::string_view name) {
+    const BlockType* own = to.net.kinds ? to.net.kinds->find(name) : nullptr;
+    const BlockType* known = to.catalog.find(name);
+    const bool is_written = known && known->name == name;
+    return own && (own->name == name || !is_written) ? own : known;
+}
+
 void find_type(Resolving& to, const Node& name, Instance& block) {
     if (name.text.empty()) return;
-    if (to.net.kinds) block.type = to.net.kinds->find(name.text);
-    if (!block.type) block.type = to.catalog.find(name.text);
+    block.type = type_called(to, name.text);
     if (block.type) return construct(block);
     if (!to.net.kinds) return;
     auto names = to.catalog.names();

@@ -59,8 +59,9 @@ ProjectTask read_task(st::Cursor& p, const std::string& resource) {
             if (made.every == 0) made.every = interval_of_variable(p, value);
         }
         if (st::same_name(key.text, "single") && !st::same_name(value, "false"))
-            made.single = {std::string(value), first.place.mark()};
-        if (st::same_name(key.text, "event")) made.event = value;
+            made.event = {{std::string(value), first.place.mark()}, true};
+        if (st::same_name(key.text, "event"))
+            made.event = {{std::string(value), first.place.mark()}};
         if (st::same_name(key.text, "priority"))
             std::from_chars(value.data(), value.data() + value.size(), made.priority);
     }
@@ -176,8 +177,8 @@ void read_tasks_of_export(const Reading& to, const SourceFile& source) {
         }
         ProjectTask task = read_task(p, {});
         task.counts_always = false;
-        if (task.event.empty()) task.event = std::exchange(task.single, {}).text;
-        task.is_free = task.every == 0 && task.event.empty();
+        task.event.is_edge = false;
+        task.is_free = task.every == 0 && task.event.text.empty();
         read_calls(p, task);
         const auto is_known = [&](const ProjectTask& other) {
             return st::same_name(other.name.text, task.name.text);

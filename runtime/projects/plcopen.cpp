@@ -116,8 +116,9 @@ class PlcopenProject {
             if (kind.empty() || kind == "Cyclic") continue;
             to.every = 0;
             to.is_free = kind == "Freewheeling";
-            to.event = file_.plain(settings.attribute("Event"));
-            if (to.event.empty()) to.event = file_.plain(settings.attribute("ExternalEvent"));
+            for (const char* const of : {"ExternalEvent", "Event"})
+                if (const pugi::xml_attribute event = settings.attribute(of))
+                    to.event = {{file_.plain(event), file_.mark(file_.part(event))}};
         }
     }
 
@@ -128,8 +129,9 @@ class PlcopenProject {
         std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
         made.every = interval_of(file_.plain(task.attribute("interval")));
         read_settings(task, made);
-        if (const pugi::xml_attribute single = task.attribute("single"))
-            made.single = {file_.plain(single), file_.mark(file_.part(single))};
+        const pugi::xml_attribute single = task.attribute("single");
+        if (const std::string named = file_.plain(single); !named.empty())
+            made.event = {{named, file_.mark(file_.part(single))}, true};
         add_programs(task, made);
         to_.project.tasks.push_back(std::move(made));
     }

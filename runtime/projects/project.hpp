@@ -28,14 +28,19 @@ struct TaskProgram : Name {
     std::vector<std::pair<Name, std::string>> apart = {};  ///< blocks of it, and the tasks of these
 };
 
+/// What starts a task that is not cyclic.
+struct TaskEvent : Name {
+    bool is_edge =
+        false;  ///< rising, of a BOOL of the project; else it may be none of its variables
+};
+
 /// A task: cyclic, free, or started by an event.
 struct ProjectTask {
     Name name;                   ///< empty: of programs without a task
     std::string resource = {};   ///< of a CONFIGURATION
     std::int64_t every = 0;      ///< [ns] 0: not said, free, or started by an event
     std::int64_t priority = 0;   ///< as the project counts: the smallest is the most urgent
-    Name single = {};            ///< the BOOL whose rising edges start it; empty: none is said
-    std::string event = {};      ///< what starts it, where that may be none of its variables
+    TaskEvent event = {};        ///< that starts it; empty: none is said
     bool is_free = false;        ///< begins again as soon as it has ended
     bool is_background = false;  ///< again and again, when no other has to run
     bool counts_always = false;  ///< else one that is not said to be cyclic is left out

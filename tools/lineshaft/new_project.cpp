@@ -293,9 +293,10 @@ std::string remark_on_event(const projects::ProjectTask& task) {
     std::string programs;
     for (const projects::TaskProgram& program : task.programs)
         programs += (programs.empty() ? "" : ", ") + program.text;
-    return fmt::format("  # '{}' runs {} at {}: give it a task such as x: {{on: a.signal}}\n",
-                       task.name.text, programs.empty() ? "nothing" : programs,
-                       task.event.empty() ? "an event" : fmt::format("the event '{}'", task.event));
+    return fmt::format(
+        "  # '{}' runs {} at {}: give it a task such as x: {{on: a.signal}}\n", task.name.text,
+        programs.empty() ? "nothing" : programs,
+        task.event.text.empty() ? "an event" : fmt::format("the event '{}'", task.event.text));
 }
 
 std::string comment_of(std::string_view note) {
@@ -431,17 +432,18 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     std::ranges::move(owners, std::back_inserter(blocks));
     const std::string name = file.stem().string();
     const std::vector<Field> addresses = addresses_of(*library);
-    std::string text = fmt::format(
-        "# Around a project of another tool. Try, and then change:\n"
-        "#   lineshaft run {0}.yaml --trace {0}.csv{1}\n"
-        "#   lineshaft check {0}.yaml{1}\n"
-        "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}{4}run: {{for: 1 s}}\n",
-        name, include_option(path, file), sources_text(*chosen, file), dialect_text(),
-        text_of(project, tasks, blocks) + inputs_text(addresses, tasks));
     std::vector<std::string> signals = motions_of(blocks);
     const bool moves = !signals.empty();
     std::ranges::move(signals_of(*library, programs.front(), moves), std::back_inserter(signals));
     add_addresses(addresses, signals);
+    std::string text = fmt::format(
+        "# Around a project of another tool. Try, and then change:\n"
+        "#   lineshaft run {0}.yaml{5}{1}\n"
+        "#   lineshaft check {0}.yaml{1}\n"
+        "lineshaft: 1\ntitle: {0}\nsources: [{2}]\n{3}{4}run: {{for: 1 s}}\n",
+        name, include_option(path, file), sources_text(*chosen, file), dialect_text(),
+        text_of(project, tasks, blocks) + inputs_text(addresses, tasks),
+        signals.empty() ? std::string() : fmt::format(" --trace {}.csv", name));
     if (!signals.empty())
         text += fmt::format("trace: {{task: {}, signals: [{}]}}\n", programs.front().task,
                             fmt::join(signals, ", "));

@@ -61,10 +61,10 @@ NewTask task_of(const projects::ProjectTask& task) {
     if (task.every > 0) return made;
     if (task.is_free)
         made.note = "it runs freely there, without an interval";
-    else if (task.single.text.empty())
-        made.note = "the project does not say the interval";
+    else if (task.event.is_edge)
+        made.on = signal_of(task.event.text);
     else
-        made.on = signal_of(task.single.text);
+        made.note = "the project does not say the interval";
     return made;
 }
 
@@ -88,7 +88,7 @@ std::string plain_name(std::string_view text) {
 }
 
 bool is_taken(const projects::ProjectTask& task) {
-    return task.every > 0 || !task.single.text.empty() || task.counts_always || task.is_free;
+    return task.every > 0 || task.event.is_edge || task.counts_always || task.is_free;
 }
 
 bool is_memory(const projects::OrganizationBlock& block) {

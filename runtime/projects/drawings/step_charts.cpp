@@ -36,6 +36,14 @@ struct Flag {
 constexpr Flag flags[] = {{"Init", "SFCInit", "BOOL"},
                           {"Reset", "SFCReset", "BOOL"},
                           {"Pause", "SFCPause", "BOOL"},
+                          {"Tip", "SFCTip", "BOOL"},
+                          {"TipMode", "SFCTipMode", "BOOL"},
+                          {"Trans", "SFCTrans", "BOOL"},
+                          {"EnableLimit", "SFCEnableLimit", "BOOL"},
+                          {"Error", "SFCError", "BOOL"},
+                          {"QuitError", "SFCQuitError", "BOOL"},
+                          {"ErrorStep", "SFCErrorStep", "STRING"},
+                          {"ErrorPOU", "SFCErrorPOU", "STRING"},
                           {"CurrentStep", "SFCCurrentStep", "STRING"}};
 
 using Nodes = std::vector<pugi::xml_node>;
@@ -306,20 +314,29 @@ void StepChart::write_condition(pugi::xml_node transition) {
     if (is_named) write("()", transition);
 }
 
+/// As a word of its own, not `SFCTip` in SFCTipMode.
+bool names(std::string_view text, std::string_view word) {
+    const auto goes_on = [](char c) { return is_letter(c) || is_digit(c) || c == '_'; };
+    for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; ++at)
+        if (at + word.size() == text.size() || !goes_on(text[at + word.size()])) return true;
+    return false;
+}
+
 /// Those that the chart looks at, which the block does not declare, and which are written about.
 void declare_flags(const XmlFile& file, MadeVariables& variables, pugi::xml_node pou) {
     const Archive archive(file);
     const pugi::xml_node used =
         Archive::member(Archive::root(pou.child("ObjectProperties")), "Flags");
     const std::string declared = lower(file.plain(pou.child("Declaration")));
+    const std::string text = lower(file.text());
     const Nodes entries = Archive::items(used);
     for (std::size_t i = 0; i + 1 < entries.size(); i += 2)
         for (const Flag& flag : flags) {
             if (file.plain(entries[i]) != flag.key) continue;
             const bool is_used = archive.is_true(entries[i + 1], "Use") &&
                                  archive.is_true(entries[i + 1], "Declare");
-            const bool is_named = lower(file.text()).find(lower(flag.name)) != std::string::npos;
-            const bool is_declared = declared.find(lower(flag.name)) != std::string::npos;
+            const bool is_named = names(text, lower(flag.name));
+            const bool is_declared = names(declared, lower(flag.name));
             if (is_used && is_named && !is_declared) variables.declare(flag.name, flag.type);
         }
 }

@@ -122,4 +122,26 @@ struct ActionUse {
 void write_action_of_matiec(ChartWriter& w, const Token& action,
                             const std::vector<ActionUse>& uses);
 
+// chart_flags.cpp
+
+/// Of the variable that tells whether a transition fires.
+std::string_view fired_name(ChartWriter& w, std::size_t number);
+
+/// A variable of CODESYS that the block declares, by whose name its charts are told what to do, or
+/// tell what they are at; null: it declares none.
+Variable* flag_of_charts(const Routine& block, std::string_view name, Kind kind = Kind::boolean);
+
+/// Who calls an action of the block gives these.
+inline constexpr std::string_view given_flags_of_charts[] = {
+    "SFCInit", "SFCReset", "SFCPause", "SFCQuitError", "SFCTip", "SFCTipMode", "SFCEnableLimit"};
+
+/// SFCTip goes on, whatever the condition is; in SFCTipMode nothing else does.
+Expression* condition_of(ChartWriter& w, const ChartTransition& t);
+
+/// SFCTrans: a transition fires.
+void write_transition_flag(ChartWriter& w, const Chart& chart);
+
+/// SFCCurrentStep is the name of the last step that is active.
+void write_current_step(ChartWriter& w, const Chart& chart);
+
 }  // namespace lineshaft::st

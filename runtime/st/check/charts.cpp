@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/chart_writer.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
@@ -136,10 +137,6 @@ bool shares_step(const ChartTransition& a, const ChartTransition& b) {
         a.from, [&](const Token& step) { return find_called(b.from, step.text) != nullptr; });
 }
 
-std::string_view fired_name(ChartWriter& w, std::size_t number) {
-    return w.part_name("transition", std::to_string(number + 1));
-}
-
 Block joined(Block first, const Block& second) {
     first.insert(first.end(), second.begin(), second.end());
     return first;
@@ -171,7 +168,7 @@ Block write_conditions(ChartWriter& w, const Chart& chart) {
             if (shares_step(*order[k], t))
                 may = w.joined(Word::and_, may, w.negated(w.name(at, fired_name(w, k))));
         w.out.push_back(w.set(w.name(at, fired_name(w, i)), w.truth(at, false)));
-        w.out.push_back(w.when(may, {w.set(w.name(at, fired_name(w, i)), t.condition)}));
+        w.out.push_back(w.when(may, {w.set(w.name(at, fired_name(w, i)), condition_of(w, t))}));
         Block left, entered;
         for (const Token& step : t.from)
             left.push_back(w.set(w.active(step), w.truth(step, false)));
@@ -187,6 +184,7 @@ Block write_conditions(ChartWriter& w, const Chart& chart) {
         leaving.push_back(w.when(w.name(at, fired_name(w, i)), std::move(left)));
         entering.push_back(w.when(w.name(at, fired_name(w, i)), std::move(entered)));
     }
+    write_transition_flag(w, chart);
     if (w.is_codesys()) write_next(w, chart);
     return joined(std::move(leaving), entering);
 }
@@ -337,33 +335,13 @@ Block restarted(ChartWriter& w, const Chart& chart) {
     return made;
 }
 
-/// A variable of CODESYS that the block declares, by whose name its charts are told what to do, or
-/// tell what they are at; null: it declares none.
-Variable* flag_of_charts(const Routine& block, std::string_view name, Kind kind = Kind::boolean) {
-    const auto it = block.names.find(name);
-    const bool is_flag = it != block.names.end() && it->second->type &&
-                         it->second->type->kind == kind && block.pou->place.dialect().is_loose;
-    return is_flag ? it->second : nullptr;
-}
-
-/// SFCCurrentStep is the name of the last step that is active.
-void write_current_step(ChartWriter& w, const Chart& chart) {
-    if (!flag_of_charts(w.routine, "SFCCurrentStep", Kind::text)) return;
-    for (const ChartStep& step : chart.steps) {
-        Expression* name = make_constant(w.c, w.like(step.name), string_type,
-                                         {.text = std::string(step.name.text)});
-        w.out.push_back(
-            w.when(w.active(step.name), {w.set(w.name(step.name, "SFCCurrentStep"), name)}));
-    }
-}
-
 /// What a chart does in a scan, in this order.
 struct ChartScan {
     Block evolution = {}, actions = {}, conditions = {};
 };
 
 /// While SFCReset the chart stands at its initial step, and while SFCInit it runs no action either;
-/// while SFCPause nothing is done.
+/// while SFCPause or SFCQuitError nothing is done.
 Block with_flags(ChartWriter& w, const Chart& chart, ChartScan scan) {
     const bool resets = flag_of_charts(w.routine, "SFCReset");
     const bool begins = flag_of_charts(w.routine, "SFCInit");
@@ -383,8 +361,10 @@ Block with_flags(ChartWriter& w, const Chart& chart, ChartScan scan) {
     }
     if (begins) scan.actions = {w.when(w.negated(any(true, false)), scan.actions)};
     made = joined(joined(std::move(made), scan.actions), scan.conditions);
-    if (!flag_of_charts(w.routine, "SFCPause")) return made;
-    return {w.when(w.negated(w.name(at, "SFCPause")), std::move(made))};
+    for (const std::string_view stops : {"SFCPause", "SFCQuitError"})
+        if (flag_of_charts(w.routine, stops))
+            made = {w.when(w.negated(w.name(at, stops)), std::move(made))};
+    return made;
 }
 
 /// `_action` of each action, where nothing else has that name.
@@ -450,7 +430,7 @@ void declare_charts(Checking& c, Routine& routine) {
     if (routine.owner) return;
     declare_chart(c, routine, routine);
     for (Routine* method : routine.own_methods) declare_chart(c, routine, *method);
-    for (const std::string_view flag : {"SFCInit", "SFCReset", "SFCPause"})
+    for (const std::string_view flag : given_flags_of_charts)
         if (Variable* variable = flag_of_charts(routine, flag);
             variable && variable->section == Section::local)
             variable->section = Section::input;  // who calls an action gives it

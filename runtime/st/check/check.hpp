@@ -23,6 +23,8 @@ struct Checked {
     /// Of the program's addresses that become numbers (`code/addresses.hpp`); null: none does.
     Variable *numbered = nullptr, *numbers = nullptr;
     Image image = {};                                 ///< the process image
+    bool is_referred[Image::parts] = {};              ///< of it: pointers go beyond what is named
+    const Type* bytes_of_image = nullptr;             ///< as pointers see them; null: none does
     std::unordered_set<const Source*> foreign_users;  ///< that have names of libraries not here
     /// Variables of IEC_TIMER, and what calls make them; null: not always the same.
     std::unordered_map<const Variable*, const BlockType*> called_as = {};

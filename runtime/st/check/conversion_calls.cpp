@@ -141,7 +141,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     if (is_numbered && !coerce(c, value, ulint_type)) return nullptr;
     const Type& from = *value->type;
     const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
-    if (is_text || from.is_pointer()) {
+    const bool is_this = value->kind == E::self && (target->is_integer() || target->is_bits());
+    if (is_text || is_this || from.is_pointer()) {
         if (!is_text && !coerce(c, value, *target)) return nullptr;
         e = value;
         if (!is_text || from.is_wide == target->is_wide) return e->type;

@@ -176,6 +176,16 @@ bool is_of_program(const Checking& c, const Variable& variable) {
            (section == Section::input || section == Section::output || section == Section::global);
 }
 
+/// A UNION has bytes as they are.
+const Type& type_of_pointers(Checking& c, const Image& image) {
+    Type& bytes = c.make_type(Kind::array, {});
+    bytes.upper = std::int64_t{image.bytes} - 1;
+    bytes.element = &bits_type(8);
+    Type& all = c.make_type(Kind::union_, std::string(image_name));
+    all.members = {&c.make_variable(image.variables.front()->name, "bytes", &bytes)};
+    return all;
+}
+
 }  // namespace
 
 bool is_left_open(const Token& at, Variable& variable) {
@@ -261,14 +271,18 @@ void finish_image(Checking& c) {
             std::uint64_t& size = sizes[image.part_of(address)];
             size = std::max<std::uint64_t>(size, address.end());
         }
+    constexpr std::uint64_t behind_what_is_named = 1024;
     std::uint64_t at = 0;
     for (std::size_t part = 0; part < Image::parts; ++part) {
+        if (c.checked.is_referred[part]) sizes[part] += behind_what_is_named;
         image.begins[part] = static_cast<std::uint32_t>(at);
         at += (sizes[part] + 7) / 8 * 8;
     }
     image.bytes = static_cast<std::uint32_t>(at);
     const_cast<Type&>(*c.checked.globals[static_cast<std::size_t>(image.global)].type).slots =
         static_cast<std::uint32_t>(at / 8);
+    if (std::ranges::find(c.checked.is_referred, true) != std::end(c.checked.is_referred))
+        c.checked.bytes_of_image = &type_of_pointers(c, image);
     warn_of_crossing(c, image);
 }
 

@@ -223,13 +223,18 @@ void note_all_rings(Checking& c) {
 
 void tell_of_rounds(Checking& c, const std::vector<Round>& rounds) {
     for (const auto& [last, hops, recurs] : rounds) {
-        const std::string text = fmt::format("'{}' calls itself: {}", last->routine->name, hops);
+        const bool is_of_method = last->routine->owner && !last->is_call;
+        const std::string text = fmt::format(
+            "'{}' {}: {}", last->routine->name,
+            is_of_method ? "would declare an instance that it is a part of" : "calls itself", hops);
         if (recurs)
             c.warn(code::calls_itself, last->place, text, "be sure that it ends soon");
         else
             c.fail(code::contains_itself, last->place, text,
-                   last->is_call ? "its instance has one body: write a method, which may do so"
-                                 : "what is in it has no end: use a reference");
+                   last->is_call  ? "its instance has one body: write a method, which may do so"
+                   : is_of_method ? "an instance has room for the variables of its methods: "
+                                    "declare this one as VAR_IN_OUT or REFERENCE TO"
+                                  : "what is in it has no end: use a reference");
     }
 }
 

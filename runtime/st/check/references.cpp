@@ -46,8 +46,10 @@ std::string_view why_no_place(const Expression& e, bool is_pointer) {
     if (e.kind != E::name && e.kind != E::member && e.kind != E::index && e.kind != E::deref)
         return "a value has no place";
     const Expression& root = root_of(e);
-    if (root.variable && root.variable->space == Space::image)
-        return "what stands at an address is not referred to";
+    if (root.variable && root.variable->space == Space::image) {
+        if (root.variable->address.bits == 1) return "a bit at an address has no place of its own";
+        if (e.place.dialect().packs_as_s7) return "what stands at an address is not referred to";
+    }
     if (root.kind == E::deref) return {};
     if (root.kind != E::name && root.kind != E::member) return "a value has no place";
     if (root.variable && root.variable->constant && !is_pointer) return "a constant has no place";
@@ -231,6 +233,8 @@ bool refer(Checking& c, Expression*& e, const Type& to) {
     const Expression& root = root_of(*e);
     if (root.variable) {
         root.variable->used = true;
+        if (root.variable->space == Space::image)
+            c.checked.is_referred[c.checked.image.part_of(root.variable->address)] = true;
         c.checked.refers_to_in_outs |= root.variable->space == Space::reference;
     }
     e = make_reference_to(c, e, to);

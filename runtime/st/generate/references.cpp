@@ -49,10 +49,15 @@ bool is_element_in_a_run(const Expression& part, const Expression& root) {
            part.arguments[0].value->kind != E::constant;
 }
 
+bool is_in_image(const Variable* variable) {
+    return variable && variable->space == Space::image;
+}
+
 /// `base` moved on to a part of what it refers to.
 Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expression& root) {
     if (has_bytes(*root.type)) {
-        const Location whole = locate_through(base, *root.type, iec);
+        const Dialect& dialect = is_in_image(root.variable) ? root.place.dialect() : iec;
+        const Location whole = locate_through(base, *root.type, dialect);
         return reference_to_packed(w, packed_path(w, part, root, whole));
     }
     const Routine* own = w.routine->owner ? w.routine->owner : w.routine;
@@ -111,8 +116,23 @@ Location given_reference(Writing& w, const Expression& root) {
     return behind(at, root.variable->type->is_open ? 2 : 1);
 }
 
+/// What stands at an address is a part of the process image, as a whole one variable.
+Slot refer_to_image(Writing& w, const Variable& variable) {
+    const Image& image = w.checked.image;
+    const Slot made = w.new_temporary(reference_slots);
+    w.put(Op::lasting, made, w.emit(Op::set_global, none, static_cast<Slot>(image.global)));
+    const std::uint64_t piece = piece_of(w, w.pieces, &image, [&] {
+        return Piece{.name = std::string(image_name),
+                     .shape = shape_number(w, *w.checked.bytes_of_image)};
+    });
+    w.put(Op::move, made + 1, w.constant_slot(piece + image.bit_of(variable.address) / 8));
+    w.put(Op::move, made + 2, w.constant_slot(0));
+    return made;
+}
+
 Slot refer_to_variable(Writing& w, const Expression& root) {
     const Variable* variable = root.variable;
+    if (is_in_image(variable)) return refer_to_image(w, *variable);
     const Slot address = address_of(w, locate(w, root));
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, address);
@@ -219,7 +239,7 @@ Slot attempted_reference(Writing& w, const Expression& e) {
 /// Of an overlay, where a variable is seen as another type.
 bool is_view(const Expression& refer) {
     const Expression& place = *refer.operands[0];
-    return &root_of(place) == &place && place.kind != E::deref;
+    return &root_of(place) == &place && place.kind != E::deref && !is_in_image(place.variable);
 }
 
 /// A second view of a variable, which is used at once, and stays as long as it is seen so.

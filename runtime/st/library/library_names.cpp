@@ -196,8 +196,6 @@ void LibraryNames::note(const Token& name) {
     if (it == index_.by_name.end()) return;
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
-    const auto is_mapp = [](const LibraryFile* f) { return is_of_mapp(f->library); };
-    if (is_of_mapp(reading_) && std::ranges::none_of(it->second, is_mapp)) return;  // a pin of its
     names_.insert(it->first);
     if (&name.place.dialect() == &twincat) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
@@ -213,15 +211,15 @@ void LibraryNames::note_extended(const Token& name) {
     if (it != index_.by_full_name.end()) said_.insert(it->first);
 }
 
-void LibraryNames::note_names(const Tree& tree, bool are_users) {
+void LibraryNames::note_names(const Tree& tree) {
     using E = Expression::Kind;
     std::optional<NameSet> variables;
     const auto is_variable = [&](std::string_view name) {
-        if (!are_users || !index_.by_name.contains(name)) return false;
+        if (!index_.by_name.contains(name)) return false;
         if (!variables) {
             variables.emplace();
-            for (const Declaration& declared : tree.declarations)
-                variables->insert(declared.name.text);
+            for (std::size_t i = declarations_; i < tree.declarations.size(); ++i)
+                variables->insert(tree.declarations[i].name.text);
         }
         return variables->contains(name);
     };
@@ -231,9 +229,12 @@ void LibraryNames::note_names(const Tree& tree, bool are_users) {
             for (const Token& name : tree.pous[pous_].*list) note(name), note_extended(name);
     for (; expressions_ < tree.expressions.size(); ++expressions_) {
         const Expression& e = tree.expressions[expressions_];
-        const bool is_free = e.kind == E::name && !is_variable(e.token.text);
-        if (is_free || e.kind == E::typed || e.kind == E::member) note(e.token);
+        const bool may_be = e.kind == E::name || (e.kind == E::member && !reading_.empty());
+        const bool is_free = may_be && !is_variable(e.token.text);
+        const bool is_member = e.kind == E::member && reading_.empty();
+        if (is_free || is_member || e.kind == E::typed) note(e.token);
     }
+    declarations_ = tree.declarations.size();
 }
 
 void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
@@ -380,13 +381,13 @@ void LibraryNames::read(const LibraryFile& file, Tree& tree, Diagnostics& out) {
     note_libraries(tokens);
     parse(std::move(tokens), tree, out);
     reading_ = file.library;
-    note_names(tree, false);
+    note_names(tree);
     reading_ = {};
 }
 
 void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
     if (catalog_.libraries().empty()) return;
-    note_names(tree, true);
+    note_names(tree);
     if (names_.empty() && said_.empty() && of_siemens_.empty()) return;
     note_pins(tree);
     own_ = declared_namespaces(tree);

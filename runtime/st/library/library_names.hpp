@@ -31,8 +31,8 @@ namespace lineshaft::st {
 /// those alone that the project refers to, where there is one. A block that has nothing of what
 /// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's. Names of a library
 /// that is not open, and of helpers, which begin with a small letter, are not looked for, nor other
-/// names in SCL, nor what is the name of a variable everywhere. A library whose namespace the
-/// sources declare themselves is theirs.
+/// names in SCL, nor what is the name of a variable of the sources, or of the library's file that is
+/// read. A library whose namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
     /// `references` are those that a project has to libraries.
@@ -58,7 +58,7 @@ class LibraryNames {
   private:
     void note(const Token& name);
     void note_extended(const Token& name);
-    void note_names(const Tree& tree, bool are_users);
+    void note_names(const Tree& tree);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
     std::string_view block_of(const Declaration& declared) const;
@@ -73,7 +73,8 @@ class LibraryNames {
     const Catalog& catalog_;
     const Index& index_;
     NameSet references_;
-    std::size_t types_ = 0, pous_ = 0, expressions_ = 0;  ///< of the tree that were looked at
+    std::size_t types_ = 0, pous_ = 0, expressions_ = 0,
+                declarations_ = 0;  ///< that were looked at
     std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,
         of_siemens_;                            ///< as libraries write them
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have

@@ -1,8 +1,10 @@
 #include "runtime/st/library/library_names.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
 #include "runtime/st/library/library.hpp"
@@ -120,6 +122,39 @@ TEST_CASE("a program takes of libraries what nobody else has", "[st][libraries]"
     CHECK(compiled({file("a.scl", use)}).find("'BLINK' is not a type") != std::string::npos);
     CHECK(compiled({file("a.st", "PROGRAM p VAR t : LREAL; END_VAR t := PI; END_PROGRAM\n")}) ==
           "p ");
+}
+
+namespace {
+
+/// The libraries whose files a source takes along.
+std::string taken_for(const std::string& text) {
+    Diagnostics out;
+    st::Tree tree;
+    st::Tokens tokens = st::read_tokens(file("a.st", text), out);
+    st::LibraryNames names(standard_blocks());
+    names.note_libraries(tokens);
+    st::parse(std::move(tokens), tree, out);
+    names.add_files(tree, out);
+    CHECK(out.empty());
+    std::set<std::string> libraries;
+    for (const auto& [source, scopes] : tree.scopes)
+        for (const st::Scope& scope : scopes)
+            if (!scope.path.empty()) libraries.emplace(scope.path);
+    return fmt::format("{}", fmt::join(libraries, " "));
+}
+
+}  // namespace
+
+TEST_CASE("what a library's own variables are called takes no other one along", "[st][libraries]") {
+    const std::pair<const char*, const char*> all[] = {
+        {"Util", "Util __SYSTEM"},                           // RESET
+        {"Tc2_ControllerToolbox", "Tc2_ControllerToolbox"},  // bError
+        {"Siemens.Step7", "Siemens.Step7"},                  // status
+        {"Tc2_Utilities", "Tc2_System Tc2_Utilities"},       // integral
+        {"McAxis", "McAxis McBase"},                         // Axis
+        {"MpAxis", "McAxis McBase MpAxis MpBase"}};          // Info, which it has of others
+    for (const auto& [library, taken] : all)
+        CHECK(taken_for(fmt::format("USING {};\nPROGRAM p ; END_PROGRAM\n", library)) == taken);
 }
 
 TEST_CASE("a library whose namespace the sources declare is theirs", "[st][libraries]") {
