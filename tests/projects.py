@@ -718,8 +718,6 @@ def check_editors_of_matiec():
           '<variable name="MOST"><type><INT/></type></variable><addData><data name="http://www.3s-software.com/plcopenxml/mixedattrsvarlist"><MixedAttrsVarList>'
           + listed.format("", "one") + listed.format(' constant="true"', "MOST") + "</MixedAttrsVarList></data></addData></globalVars></data></addData></project>\n")
     assert run("check", "mixed.xml").startswith("ok"), "a list with constants among its variables"
-    write("sysmac.xml", '<?xml version="1.0"?>\n<Project xmlns="www.iec.ch/public/TC65SC65BWG7TF10" schemaVersion="1"/>\n')
-    assert "this is XML of IEC 61131-10, which is not read" in run("check", "sysmac.xml", code=2)
     write("old.il", "LD a\n")
     assert "this is an instruction list, which is not read" in run("check", "old.il", code=2)
 
@@ -816,6 +814,88 @@ def check_neighbours():
     write("flat/c.st", (work / "flat/a.st").read_text().replace("#Up", "#Right"))
     said = run("check", "flat", code=2)
     assert "flat/c.st:4:9: error[L0904]" in said and said.count("error[") == 1, said
+
+
+def check_standard_xml():
+    """XML of IEC 61131-10: types, lists, bodies in ST and ladders, and a body that is not read."""
+    def variable(name, type_, more=""):
+        return f'<Variable name="{name}"><Type><TypeName>{type_}</TypeName></Type>{more}</Variable>'
+
+    def rung(*elements):
+        return "<Rung>" + "".join(elements) + "</Rung>"
+
+    def point(tag, numbers):
+        lines = "".join(f'<Connection refConnectionPointOutId="{n}"/>' for n in numbers)
+        return f"<ConnectionPointIn>{lines}</ConnectionPointIn>" if tag == "in" else f'<ConnectionPointOut connectionPointOutId="{numbers[0]}"/>'
+
+    def ladder(kind, more, come, go):
+        return (f'<LdObject xsi:type="{kind}" {more}>' + (point("in", come) if come else "") + (point("out", go) if go else "") + "</LdObject>")
+
+    timer = ('<FbdObject xsi:type="DataSource" identifier="T#20ms">' + point("out", [3]) + "</FbdObject>"
+             '<FbdObject xsi:type="Block" typeName="TON" instanceName="timer"><InputVariables><InputVariable parameterName="In">' + point("in", [2])
+             + '</InputVariable><InputVariable parameterName="PT">' + point("in", [3]) + "</InputVariable></InputVariables><OutputVariables>"
+             '<OutputVariable parameterName="Q">' + point("out", [4]) + "</OutputVariable></OutputVariables></FbdObject>")
+    rungs = (rung(ladder("LeftPowerRail", "", [], [1]), ladder("Contact", 'operand="start"', [1], [2]), timer,
+                  ladder("Coil", 'operand="late"', [4], [5]), ladder("RightPowerRail", "", [5], []))
+             + rung(ladder("LeftPowerRail", "", [], [1]), ladder("Contact", 'negated="true" operand="late"', [1], [2]),
+                    ladder("Contact", 'operand="start"', [1], [3]), ladder("Coil", 'operand="early"', [2, 3], [5]), ladder("RightPowerRail", "", [5], [])))
+
+    def project(bodies):
+        return ('<?xml version="1.0" encoding="utf-8"?>\n<Project xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xmlns:smcext="https://www.ia.omron.com/Smc"'
+                ' xmlns="www.iec.ch/public/TC65SC65BWG7TF10" schemaVersion="1">\n<FileHeader companyName="OMRON"/>\n<Types><GlobalNamespace>\n'
+                '<DataTypeDecl name="Mode"><UserDefinedTypeSpec xsi:type="EnumTypeWithNamedValueSpec"><Enumerator name="Idle" value="0"/>'
+                '<Enumerator name="Busy" value="4"/><BaseType>DINT</BaseType></UserDefinedTypeSpec></DataTypeDecl>\n'
+                '<DataTypeDecl name="Record"><UserDefinedTypeSpec xsi:type="StructTypeSpec"><Member name="mode"><Type><TypeName>Mode</TypeName></Type></Member>'
+                '<Member name="list"><Type><InstantlyDefinedType xsi:type="ArrayTypeSpec"><BaseType><TypeName>INT</TypeName></BaseType>'
+                '<DimensionSpec dimensionNumber="1"><IndexRange lower="1" upper="3"/></DimensionSpec></InstantlyDefinedType></Type></Member>'
+                '<Member name="part"><Type><TypeName><![CDATA[Common\\Part]]></TypeName></Type></Member></UserDefinedTypeSpec></DataTypeDecl>\n'
+                '<NamespaceDecl name="Common"><DataTypeDecl name="Part"><UserDefinedTypeSpec xsi:type="StructTypeSpec"><Member name="text"><Type>'
+                "<TypeName>STRING[9]</TypeName></Type></Member></UserDefinedTypeSpec></DataTypeDecl></NamespaceDecl>\n"
+                '<Function name="Twice"><ResultType><TypeName>INT</TypeName></ResultType><Parameters><InputVars>' + variable("x", "INT")
+                + '</InputVars></Parameters><MainBody><BodyContent xsi:type="ST"><ST>Twice := 2 * x;</ST></BodyContent></MainBody></Function>\n'
+                '<Program name="Main"><ExternalVars>' + variable("total", "INT") + "</ExternalVars><Vars>"
+                + variable("n", "INT", '<InitialValue><SimpleValue value="5"/></InitialValue>') + variable("r", "Record")
+                + "".join(variable(name, "BOOL") for name in ("start", "late", "early")) + variable("timer", "TON")
+                + "</Vars><MainBody>" + bodies + "</MainBody></Program>\n</GlobalNamespace></Types>\n"
+                '<Instances><Configuration name="C"><Resource name="R"><GlobalVars>' + variable("total", "INT") + "</GlobalVars></Resource></Configuration></Instances></Project>\n")
+
+    def statements(text):
+        return f'<BodyContent xsi:type="ST"><ST>{text}</ST></BodyContent>'
+
+    steps = "IF n &lt; 7 AND n &gt; 0 THEN\n n := n + 1;\nEND_IF;\nstart := TRUE; total := Twice(n);\nr.list[3] := n; r.mode := Mode#Busy; r.part.text := 'a';\n"
+    write("standard.xml", project(statements(steps) + f'<BodyContent xsi:type="smcext:LdSection" name="s">{rungs}</BodyContent>'))
+    run("check", "standard.xml")
+    run("new", "standard", "--from", "standard.xml")
+    text = (work / "standard.yaml").read_text()
+    expected = (("5 ms", "Main.late", "false"), ("5 ms", "Main.early", "true"), ("end", "Main.n", 7), ("end", "'Main.r.list[3]'", 7),
+                ("end", "Main.late", "true"), ("end", "Main.early", "true"))
+    write("standard.yaml", text.split("run:")[0] + "run: {for: 100 ms}\nexpect:\n"
+          + "".join(f"  - {{at: {at}, {signal}: {value}}}\n" for at, signal, value in expected))
+    run("run", "standard.yaml", "--quiet")
+    write("standard.xml", project(statements("n := missing;") + '<BodyContent xsi:type="SFC"/>'))
+    said = run("check", "standard.xml", code=2)
+    assert "standard.xml:9:657" in said and "'missing' is not declared" in said and "this body of 'Main' is in SFC" in said, said
+
+
+def check_foreign_files():
+    """Files of tools that are not read: which tool, and what to do; and what else is in a folder."""
+    write("foreign/plant.L5X", "<RSLogix5000Content/>\n")
+    write("foreign/save.zap17", b"PK\3\4\0\1")
+    for name, tool in (("plant.L5X", "Rockwell"), ("save.zap17", "TIA Portal")):
+        assert tool in run("check", f"foreign/{name}", code=2)
+        assert tool in run("new", "x", "--from", f"foreign/{name}", code=2)
+    said = run("check", "foreign", code=2)
+    assert "1 .L5X (a file of Rockwell's" in said and "1 .zap17" in said, said
+    source = "PROGRAM Main\nVAR x : INT; END_VAR\nx := x + 1;\nEND_PROGRAM\n"
+    for ending in ("st", "plc", "STL", "structuredtext"):
+        write(f"endings/main.{ending}", source)
+        run("check", f"endings/main.{ending}")
+    write("foreign/main.st", source)
+    assert "are not read: 1 .L5X" in run("check", "foreign")
+    write("endings/main.code", source)
+    assert "give its name the ending .st" in run("check", "endings/main.code", code=2)
+    write("endings/notes.md", "# Notes\n")
+    assert "this is neither a program nor a source" in run("check", "endings/notes.md", code=2)
 
 
 def check_nothing():
@@ -1616,6 +1696,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_names_of_types()
     check_dialects()
     check_neighbours()
+    check_standard_xml()
+    check_foreign_files()
     check_nothing()
     check_automation_studio()
     check_packages()

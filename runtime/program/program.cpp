@@ -9,8 +9,10 @@
 #include "runtime/program/recording_form.hpp"
 #include "runtime/program/shared_folder.hpp"
 #include "runtime/program/templates.hpp"
+#include "runtime/projects/foreign_files.hpp"
 #include "runtime/projects/plain_text.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/test_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
@@ -77,7 +79,33 @@ std::string use_of(const std::shared_ptr<const SourceFile>& source) {
                      name);
 }
 
+/// A file that no other word of it says to be a program.
+bool has_another_name(const SourceFile& file) {
+    constexpr std::string_view endings[] = {"", ".yaml", ".yml", ".json"};
+    const std::string ending = lower(fs::path(file.path).extension().string());
+    return std::ranges::find(endings, ending) == std::end(endings) && !file.has_key("lineshaft:");
+}
+
 }  // namespace
+
+bool ProgramReader::refuse_foreign(const std::shared_ptr<const SourceFile>& file) {
+    const Mark start{file, 1, 1, 1};
+    if (const auto known = projects::foreign_file(file->path)) {
+        read_.diagnostics().add(code::not_supported, start,
+                                fmt::format("this is {}, which is not read", known->what),
+                                known->help);
+        return true;
+    }
+    if (!has_another_name(*file) || file->text.starts_with('<') || file->text.starts_with("PK"))
+        return false;
+    read_.diagnostics().add(
+        code::unknown_kind_of_file, start, "this is neither a program nor a source",
+        begins_with_unit(file->text)
+            ? "it looks like Structured Text: give its name the ending .st"
+            : "a program is YAML that begins with 'lineshaft: 1'; Structured Text stands in a "
+              "file whose name ends in .st");
+    return true;
+}
 
 Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
     program_.file = file;
@@ -100,6 +128,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
                                 "write its blocks in SCL, LAD or FBD");
         return std::move(program_);
     }
+    if (refuse_foreign(file)) return std::move(program_);
     auto root = parse(file);
     if (!root || !check_kind(read_, *root, "lineshaft")) return std::move(program_);
     Substitution substitution(values_, root->find("parameters"), read_);
@@ -370,6 +399,9 @@ projects::Project read_project(const std::string& path,
     std::vector<std::string> files{path}, allowed = include_dirs;
     if (fs::is_directory(path, error)) {
         files = projects::sources_below(path, error);
+        if (const std::string left = projects::foreign_files_below(path); !left.empty())
+            out.warn(code::not_supported, {}, fmt::format("in '{}' are not read: {}", path, left),
+                     "'lineshaft check' of one of them says what to do with it");
         allowed.push_back(path);
     }
     if (error) files = {path};

@@ -20,6 +20,9 @@ class ProgramReader {
     Program read(std::shared_ptr<const SourceFile> file);
 
   private:
+    /// A file of another tool that is not read, and one of another name that does not say to be a
+    /// program: what to do with it is told.
+    bool refuse_foreign(const std::shared_ptr<const SourceFile>& file);
     std::optional<Node> parse(const std::shared_ptr<const SourceFile>& file) const;
     void parameters(const Node& root, Substitution& substitution);
     void unused_parameters(const Node& root, const std::set<std::string>& used);

@@ -8,6 +8,7 @@
 
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/plcopen_text.hpp"
+#include "runtime/projects/standard_xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/input_file.hpp"
 #include "runtime/source/letters.hpp"
@@ -29,8 +30,14 @@ constexpr std::string_view of_standard = "TC65SC65BWG7TF10";
 /// One project of PLCopen XML.
 class PlcopenProject {
   public:
-    PlcopenProject(const XmlFile& file, const Reading& to, bool is_of_matiec)
-        : file_(file), declared_(declared_types(file)), to_(to), is_of_matiec_(is_of_matiec) {}
+    /// What is not CODESYS' has the dialect of `read_as`.
+    PlcopenProject(const XmlFile& file, const Reading& to, bool is_of_matiec,
+                   std::string_view read_as = ".matiec")
+        : file_(file),
+          declared_(declared_types(file)),
+          to_(to),
+          is_of_matiec_(is_of_matiec),
+          read_as_(read_as) {}
 
     void read() {
         const pugi::xml_node root = file_.root();
@@ -57,7 +64,7 @@ class PlcopenProject {
         PlcopenText text(file_, declared_, is_of_matiec_);
         (text.*add_to)(element);
         SourceFile made = *text.finish(element);
-        if (is_of_matiec_) made.read_as = ".matiec";
+        if (is_of_matiec_) made.read_as = read_as_;
         to_.project.add(std::make_shared<const SourceFile>(std::move(made)));
     }
 
@@ -148,6 +155,7 @@ class PlcopenProject {
     const DeclaredTypes declared_;
     const Reading& to_;
     const bool is_of_matiec_;
+    const std::string_view read_as_;
 };
 
 }  // namespace
@@ -166,10 +174,11 @@ void read_plcopen(const Reading& to, const std::string& path, const Mark& where)
     const auto file = XmlFile::read(path, to.out, where);
     if (!file) return;
     file->remove_prefix();
-    if (file->text().find(of_standard) != std::string_view::npos)
-        return to.out.add(code::not_supported, file->mark_of_tag(file->root()),
-                          "this is XML of IEC 61131-10, which is not read",
-                          "export PLCopen XML (TC6), or give its Structured Text");
+    if (is_standard_xml(*file)) {
+        const auto made = XmlFile::parse(plcopen_of_standard_xml(*file, to.out), to.out);
+        if (made) PlcopenProject(*made, to, true, ".st").read();
+        return;
+    }
     if (std::string_view(file->root().name()) != "project")
         return to.out.add(code::not_an_object, file->mark_of_tag(file->root()),
                           fmt::format("<{}> is no project of PLCopen XML", file->root().name()),

@@ -9,6 +9,7 @@
 #include "runtime/projects/codesys_export.hpp"
 #include "runtime/projects/configuration.hpp"
 #include "runtime/projects/fixtures.hpp"
+#include "runtime/projects/foreign_files.hpp"
 #include "runtime/projects/instruction_lists.hpp"
 #include "runtime/projects/openplc.hpp"
 #include "runtime/projects/organization_blocks.hpp"
@@ -51,6 +52,10 @@ std::string form_in_library(const fs::path& file) {
 }
 
 void read_text(const Reading& to, const std::string& path, const Mark& where) {
+    if (const auto known = foreign_file(path))
+        return to.out.add(code::not_supported, where,
+                          fmt::format("'{}' is {}, which is not read", path, known->what),
+                          known->help);
     auto source = read_source(path, to.out, where);
     if (!source) return;
     read_configuration(to, source);

@@ -72,40 +72,45 @@ std::string_view without_comments(std::string_view text) {
     return text;
 }
 
-/// Other texts begin with `Type` or `Program`, too: the end of one is there as well.
-bool begins_with_unit(const std::filesystem::path& file) {
-    constexpr std::string_view words[] = {
-        "program",      "function_block", "function",  "type",       "var",
-        "class",        "interface",      "namespace", "data_block", "organization_block",
-        "configuration"};
+bool is_text_with_unit(const std::filesystem::path& file) {
     std::error_code unknown;
     if (!std::filesystem::is_regular_file(file, unknown)) return false;
     std::string first(65'536, '\0');
     std::ifstream bytes(file, std::ios::binary);
     bytes.read(first.data(), static_cast<std::streamsize>(first.size()));
     first.resize(static_cast<std::size_t>(bytes.gcount()));
-    const std::string text = lower(as_utf8(std::move(first)));
+    return begins_with_unit(as_utf8(std::move(first)));
+}
+
+}  // namespace
+
+bool begins_with_unit(std::string_view written) {
+    constexpr std::string_view words[] = {
+        "program",      "function_block", "function",  "type",       "var",
+        "class",        "interface",      "namespace", "data_block", "organization_block",
+        "configuration"};
+    const std::string text = lower(std::string(written));
     std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     rest = without_comments(rest);
     const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n\"(*"));
     const std::string_view unit = word.starts_with("var_") ? "var" : word;
     return std::ranges::find(words, unit) != std::end(words) &&
-           text.find("end_" + std::string(unit)) != text.npos;
+           text.find("end_" + std::string(unit)) != text.npos &&
+           text.find("\nnetwork") == text.npos;
 }
-
-}  // namespace
 
 bool is_structured_text(const std::filesystem::path& file) {
     static constexpr std::string_view extensions[] = {
         ".st", ".scl", ".s7dcl", ".udt", ".db", ".exp", ".typ", ".var", ".fun", ".iecst", ".iec"};
     const std::string extension = lower(file.extension().string());
     return std::ranges::find(extensions, extension) != std::end(extensions) ||
-           (has_name_of_any_text(file) && begins_with_unit(file));
+           (has_name_of_any_text(file) && is_text_with_unit(file));
 }
 
 bool has_name_of_any_text(const std::filesystem::path& file) {
-    static constexpr std::string_view extensions[] = {".txt", ".text", ".il", ".pou"};
+    static constexpr std::string_view extensions[] = {
+        ".txt", ".text", ".il", ".pou", ".plc", ".stl", ".structuredtext"};
     const std::string extension = lower(file.extension().string());
     return std::ranges::find(extensions, extension) != std::end(extensions);
 }

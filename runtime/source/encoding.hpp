@@ -10,7 +10,11 @@ namespace lineshaft {
 /// begins with a unit of the language, behind comments, and has the end of one.
 bool is_structured_text(const std::filesystem::path& file);
 
-/// The file's name does not say what is in it: `.txt`, `.il`.
+/// A text begins with a unit of Structured Text and has the end of one, and is no list of
+/// instructions (AWL): other texts begin with `Type` or `Program`, too.
+bool begins_with_unit(std::string_view text);
+
+/// The file's name does not say what is in it: `.txt`, `.il`, `.plc`.
 bool has_name_of_any_text(const std::filesystem::path& file);
 
 /// A file's text in UTF-8: UTF-16 is known by its byte order mark, and a byte that belongs to no

@@ -1,10 +1,16 @@
 #include "tools/lineshaft/check_file.hpp"
 
+#include <filesystem>
+
+#include <fmt/format.h>
+
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/program/program_form.hpp"
 #include "runtime/program/recording_form.hpp"
+#include "runtime/projects/foreign_files.hpp"
 #include "runtime/run/link.hpp"
+#include "runtime/source/codes.hpp"
 #include "runtime/study/study_reader.hpp"
 
 namespace lineshaft {
@@ -23,6 +29,13 @@ void check_controller(const std::shared_ptr<const SourceFile>& file, Diagnostics
 
 std::optional<CheckedProgram> check_file(const std::string& path, const LoadOptions& options,
                                          Diagnostics& out) {
+    std::error_code unknown;
+    const auto known = projects::foreign_file(path);
+    if (known && std::filesystem::exists(path, unknown)) {
+        out.add(code::not_supported, {},
+                fmt::format("'{}' is {}, which is not read", path, known->what), known->help);
+        return {};
+    }
     const auto file = read_source(path, out);
     if (!file) return {};
     const Catalog& catalog = standard_blocks();

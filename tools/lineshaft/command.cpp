@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/projects/foreign_files.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/code/native/compile.hpp"
 #include "runtime/st/syntax/dialect.hpp"
@@ -125,12 +126,19 @@ std::vector<std::shared_ptr<const SourceFile>> read_files(
     for (const std::string& file : files) {
         const projects::Project read = read_project(file, include_dirs, out);
         for (const auto& source : read.sources) all.add(source);
-        if (read.sources.empty() && out.empty())
-            out.add(code::file_cannot_be_read, {},
-                    fmt::format("there is no source of a controller in '{}'", file),
-                    "name Structured Text, or a project of another tool: lineshaft check --help");
+        if (read.sources.empty() && out.empty()) tell_no_source(file, out);
     }
     return all.sources;
+}
+
+void tell_no_source(const std::string& path, Diagnostics& out) {
+    const std::string left = projects::foreign_files_below(path);
+    out.add(code::file_cannot_be_read, {},
+            fmt::format("there is no source of a controller in '{}'{}{}", path,
+                        left.empty() ? "" : ", but ", left),
+            left.empty()
+                ? "name Structured Text, or a project of another tool: lineshaft check --help"
+                : "'lineshaft check' of one of them says what to do with it");
 }
 
 Exit report(const Diagnostics& diagnostics, bool json) {

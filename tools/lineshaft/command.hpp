@@ -76,6 +76,9 @@ class ProgressLine {
     std::int64_t start_, shown_ = 0;
 };
 
+/// That a file or a folder has no source, and which files of other tools stand in it.
+void tell_no_source(const std::string& path, Diagnostics& out);
+
 /// The texts of sources in any form, and of all in folders.
 std::vector<std::shared_ptr<const SourceFile>> read_files(
     const std::vector<std::string>& files, const std::vector<std::string>& include_dirs,

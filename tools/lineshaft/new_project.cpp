@@ -15,6 +15,7 @@
 #include "runtime/source/yaml_text.hpp"
 #include "runtime/st/library/used_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
+#include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/new_tasks.hpp"
 
 namespace lineshaft {
@@ -402,6 +403,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
     const projects::Project& project = chosen->project;
+    if (project.sources.empty() && out.empty()) return tell_no_source(path, out), std::string();
     Diagnostics found;  // of which a run tells the warnings
     const auto library =
         out.empty() ? st::compile_used(project.sources, task_programs(project), standard_blocks(),

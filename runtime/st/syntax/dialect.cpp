@@ -193,8 +193,9 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
 }
 
 bool is_plain_text(std::string_view path) {
-    static constexpr std::string_view endings[] = {plain_text, ".iecst", ".iec", ".txt",
-                                                   ".text",    ".il",    ".pou"};
+    static constexpr std::string_view endings[] = {
+        plain_text, ".iecst", ".iec", ".txt", ".text",
+        ".il",      ".pou",   ".plc", ".stl", ".structuredtext"};
     const std::string name = lower(path);
     const auto ends = [&](std::string_view ending) { return name.ends_with(ending); };
     return std::ranges::any_of(endings, ends) && !ends(".scl.txt") && !ends(".exp.txt");
