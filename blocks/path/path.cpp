@@ -369,10 +369,13 @@ void Path::clear() {
 PathMotion Path::advance(std::span<PathPiece> ring, double dt) {
     if (finished() || lost) return now(ring);
     const bool is_ripe = fresh && time + dt >= leg.ripe;
-    if (!stale && is_ripe && leg.course.count > 0)
+    if (!stale && is_ripe && leg.course.count > 0) {
         go_on(*this, ring);
-    else if ((stale || is_ripe) && !plan_anew(*this, ring))
+    } else if ((stale || is_ripe) && !plan_anew(*this, ring)) {
         stale = true;
+        lost = standing() && factor_of(*this) > 0;
+    }
+    if (lost) return now(ring);
     time += dt;
     while (!finished() && !lost && at_end_of_stretch(*this, ring)) enter_next(*this, ring);
     if (standing()) time = leg.duration();
