@@ -112,8 +112,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, leg))
         into =
             path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
-    if (path.halted && brakes_harder(outlook, base))
-        into = halt_harder(path, outlook, from, into, leg);
+    if (path.halted) into = halt_harder(path, outlook, from, into, leg);
     if (into == IntoBoxes::none) return false;
     if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg);
     path.leg = leg;
