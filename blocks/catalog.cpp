@@ -223,6 +223,8 @@ Catalog make_catalog() {
     blocks.add<GroupReadStatus>();
     blocks.add<GroupReadError>();
     blocks.add<GroupReadActualPosition>();
+    blocks.add<GroupReadSetPosition>();
+    blocks.add<GroupReadActualVelocity>();
     blocks.add<MoveLinearAbsolute>();
     blocks.add<MoveLinearRelative>();
     blocks.add<MoveCircularAbsolute>();
