@@ -100,6 +100,47 @@ void lack_of_softmotion(Catalog& blocks) {
     lack(blocks, table);
 }
 
+/// Of TwinCAT's interpolation, and of its groups what the catalogue's have otherwise.
+void lack_of_twincat(Catalog& blocks) {
+    const Lack table[] = {
+        {"a channel of the interpolation and its G code are not run here: make the axes a group "
+         "with MC_AddAxisToGroup and MC_GroupEnable, write the points as a path_table, and run "
+         "along them with MC_MovePath",
+         {"CfgBuild3DGroup",
+          "CfgBuildExt3DGroup",
+          "CfgAddAxisToGroup",
+          "CfgReconfigGroup",
+          "CfgReconfigAxis",
+          "CfgRead3DAxisIds",
+          "CfgReadExt3DAxisIds",
+          "ItpLoadProg",
+          "ItpLoadProgEx",
+          "ItpStartStop",
+          "ItpStartStopEx",
+          "ItpEStop",
+          "ItpEStopEx",
+          "ItpStepOnAfterEStop",
+          "ItpStepOnAfterEStopEx",
+          "ItpReset",
+          "ItpResetEx2",
+          "ItpSingleBlock",
+          "ItpWriteRParams",
+          "ItpWriteRParamsEx",
+          "ItpReadRParams",
+          "ItpReadRParamsEx",
+          "ItpEnableDefaultGCode",
+          "FB_NciFeedTable",
+          "FB_NciFeedTablePreparation",
+          "NCTOPLC_NCICHANNEL_REF",
+          "PLCTONC_NCICHANNEL_REF"}},
+        {"write the points as a path_table of the program, which MC_MovePath takes as PathData, or "
+         "command each with MC_MoveLinearAbsolute and BufferMode mcBlendingLow",
+         {"MC_MoveLinearAbsolutePreparation", "MC_MoveLinearRelativePreparation",
+          "MC_MoveCircularAbsolutePreparation", "MC_MoveCircularRelativePreparation",
+          "MC_BlendingPreparation", "MC_DwellTimePreparation", "MC_PATH_DATA_REF"}}};
+    lack(blocks, table);
+}
+
 /// Of B&R's motion before mapp.
 void lack_of_br(Catalog& blocks) {
     const Lack table[] = {
@@ -223,6 +264,8 @@ Catalog make_catalog() {
     blocks.add<GroupReadStatus>();
     blocks.add<GroupReadError>();
     blocks.add<GroupReadActualPosition>();
+    blocks.add<GroupReadSetPosition>();
+    blocks.add<GroupReadActualVelocity>();
     blocks.add<MoveLinearAbsolute>();
     blocks.add<MoveLinearRelative>();
     blocks.add<MoveCircularAbsolute>();
@@ -281,6 +324,7 @@ Catalog make_catalog() {
                     "MC_MoveVelocity within Acceleration and Jerk, or wire a servo_drive, whose "
                     "mechanics have forces");
     lack_of_siemens(blocks);
+    lack_of_twincat(blocks);
     lack_of_br(blocks);
     lack_of_softmotion(blocks);
     blocks.add_libraries(vendor_libraries());

@@ -6,9 +6,11 @@ usage: plan.py LINESHAFT
 
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 HEADER = "Vs,Ve,Vm,A,J,L\n"
 OUTPUT_HEADER = "ok,case,equation,T1,T2,T3,T4,T5,T6,T7,end_velocity"
@@ -229,6 +231,34 @@ def check_times_of_curves(lineshaft):
             yield f"--path, {curve}: {seconds[0]} s, and samples until {seconds[1]} s"
 
 
+def check_short_paths(lineshaft):
+    """Numbers too many decades apart to be planned are an error, and what takes long ends by a signal."""
+    limits = ["--path", "--limits", "1,1,1"]
+    for length in ("1e-30", "1e-100", "1e-160", "1e-300"):
+        code, out, err = run(lineshaft, *limits, text=f"position1,position2\n0,0\n{length},0\n")
+        ok = out.splitlines()[1].split(",")[1:3]
+        if code != 0 or ok not in (["1", ""], ["0", "not_finite"]) or (length == "1e-30" and ok[0] == "0"):
+            yield f"--path, a line of {length}: exit code {code}, {out!r}, {err!r}"
+    rows = {}
+    for unit in ("", " mm"):
+        code, rows[unit], err = run(lineshaft, *limits, text=f"position1,position2\n0{unit},0\n3{unit},4\n")
+        if code != 0:
+            yield f"--path, with '{unit}': exit code {code}, said {err!r}"
+    if rows[""] != rows[" mm"]:
+        yield f"--path: a unit changes {rows['']!r} to {rows[' mm']!r}"
+    if run(lineshaft, *limits, text="position1\n0 mm\n3 m\n")[0] != 2:
+        yield "--path: two units in a column are accepted"
+    for by in (signal.SIGTERM, signal.SIGINT):
+        with subprocess.Popen([lineshaft, "plan", *limits, "--every", "1e-9"], stdin=subprocess.PIPE,
+                              stdout=subprocess.DEVNULL) as process:
+            process.stdin.write(b"position1\n0\n1\n")
+            process.stdin.close()
+            time.sleep(0.3)
+            process.send_signal(by)
+            if process.wait(10) != 130:
+                yield f"--path, {by.name}: exit code {process.returncode}"
+
+
 def check_paths(lineshaft):
     """A line in many points takes the time of the line; corners within a deviation, splines, bulk, what is wrong."""
     limits = ["--limits", "100,1000,10000"]
@@ -272,7 +302,7 @@ def check_paths(lineshaft):
 def main():
     lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
     failures = [*check_answers(lineshaft), *check_motions(lineshaft), *check_many(lineshaft), *check_dialogue(lineshaft),
-                *check_paths(lineshaft)]
+                *check_paths(lineshaft), *check_short_paths(lineshaft)]
     with tempfile.TemporaryDirectory() as folder:
         failures += check_files(lineshaft, pathlib.Path(folder))
     for failure in failures:

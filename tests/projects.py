@@ -1530,6 +1530,20 @@ def check_axes_of_lists():
     assert "'Axis' stands in several lists" in run("check", "lists", code=2)
 
 
+def check_axes_of_groups():
+    """A group of a device tree has axes, and a slave is not stopped by limits that nobody has given."""
+    write("grouped.st", "PROGRAM PLC_PRG\nVAR p : SMC_GroupPower; e : MC_GroupEnable; m : MC_MoveLinearAbsolute := (Velocity := 400, "
+          "Acceleration := 4000, Deceleration := 4000, Jerk := 100000, Position := (c := (X := 30, Y := 40))); END_VAR\n"
+          "p(AxisGroup := Robot, Enable := TRUE, bRegulatorOn := TRUE, bDriveStart := TRUE);\n"
+          "e(AxisGroup := Robot, Execute := p.Status);\nm(AxisGroup := Robot, Execute := e.Done);\nEND_PROGRAM\n")
+    run("new", "grouped", "--from", "grouped.st")
+    text = (work / "grouped.yaml").read_text()
+    assert "Robot_z_member: {type: MC_AddAxisToGroup, task: main, AxesGroup: Robot, Axis: Robot_z, IdentInGroup: 3, Execute: true}" in text, text
+    write("grouped.yaml", text + "expect:\n  - {at: end, Robot_x.position: 30 mm}\n  - {at: end, Robot_y.position: 40 mm}\n"
+          "  - {at: 600 ms, PLC_PRG.m.Done: true}\n")
+    run("run", "grouped.yaml", "--quiet")
+
+
 def check_called_programs():
     """Axes in a PROGRAM that MAIN calls, and in instances in it; what is called is not scanned by its task as well."""
     twincat("called", "POU", "MAIN", "PROGRAM MAIN\nVAR p : MC_Power; END_VAR", "Axes();")
@@ -1785,6 +1799,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_lost_bases()
     check_left_over()
     check_axes_of_lists()
+    check_axes_of_groups()
     check_called_programs()
     check_axes_of_suites()
     check_suites_of_programs()

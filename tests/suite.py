@@ -202,6 +202,12 @@ said = run("blocks", "MC_MOVEABSOLUTE", code=0)
 assert "mcShortestWay" in said and "lineshaft blocks Tc2_MC2.MC_MoveAbsolute\n" in said, said
 assert "MotionControl.Native.MC_MoveAbsolute\n" in said, said
 assert "Libraries" not in run("blocks", "MC_MovePath", code=0)
+said = run("blocks", "sm3_robotics", code=0)
+assert re.search("^MC_GroupStop +Stops a group on its path, and holds it while Execute is there", said, re.M) and "error_of" not in said, said
+said = run("blocks", "Siemens.Simatic.S71500.MotionControl.Native", code=0)
+assert re.search("^MC_GearInPos ", said, re.M) and "isFarFrom" not in said, said
+said = subprocess.run([lineshaft, "blocks", "Tc9_None.Block"], cwd=folder, capture_output=True, text=True)
+assert said.returncode == 2 and "there is no block type 'Tc9_None.Block'" in said.stderr, said
 
 # A comment in Latin-1 is text as another.
 (folder / "latin.st").write_bytes("FUNCTION_BLOCK p\nVAR_INPUT x : INT; (* õä *) END_VAR\nEND_FUNCTION_BLOCK\n".encode("iso-8859-1"))

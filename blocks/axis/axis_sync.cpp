@@ -149,7 +149,8 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
     sync.led = leader;
     if (is_cam && c.start_mode == StartMode::direct) return MotionError::none;
     if (is_cam && c.start_mode == StartMode::ramp_in) return ramp_in(from, leader, table, at);
-    if (sync.is_on_law(from, leader, table)) return MotionError::none;
+    const bool is_there = sync.is_on_law(from, leader, table);
+    if (is_there && c.start_distance == 0) return MotionError::none;
     double left = sync.distance(leader);
     const bool begins_here = is_cam && std::abs(left) <= sum_rounding * std::abs(leader.position);
     if (begins_here && sync.is_beside_law(from, leader, table)) return MotionError::none;
@@ -160,7 +161,7 @@ MotionError Axis::join_law(const Context& context, const Moment& at, const Motio
         meet_in_next_turn(sync, leader, turn, table);
         left = sync.distance(leader);
     }
-    if (!(left > 0)) return MotionError::sync_passed;
+    if (!(left > 0)) return is_there ? MotionError::none : MotionError::sync_passed;
     if (c.start_distance == 0 || left <= c.start_distance)
         return approach(context, from, table, at);
     sync.stage = Stage::waiting;

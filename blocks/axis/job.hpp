@@ -73,6 +73,7 @@ enum class MotionError : std::int64_t {
     axis_left_path,
     no_arc,
     buffer_full,
+    not_where_interrupted,
 };
 
 inline constexpr std::string_view motion_error_names[] = {"none",
@@ -108,7 +109,8 @@ inline constexpr std::string_view motion_error_names[] = {"none",
                                                           "axis_moves",
                                                           "axis_left_path",
                                                           "no_arc",
-                                                          "buffer_full"};
+                                                          "buffer_full",
+                                                          "not_where_interrupted"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -133,7 +135,9 @@ inline constexpr std::string_view motion_error_texts[] = {
     "MC_Power does not enable the direction of the way, with EnablePositive or EnableNegative",
     "a reference of the block names nothing",
     "what the block refers to is in another unit than its axis",
-    "the axis follows a group in motion, whose commands move it",
+    "the axis follows a group in motion, whose commands move it: MC_GroupStop or MC_GroupHalt "
+    "stops "
+    "it",
     "the command refers to no group",
     "the group is disabled, which MC_GroupEnable ends",
     "MC_GroupStop holds the group until its Execute is false",
@@ -147,7 +151,8 @@ inline constexpr std::string_view motion_error_texts[] = {
     "an axis of the group has no power or an error, and has left the path",
     "no arc leads through the points, or about the centre, to where it is to end",
     "another command waits already, and the axis keeps one: start it when that is Active, or with "
-    "BufferMode MC_Aborting"};
+    "BufferMode MC_Aborting",
+    "the axes are not where MC_GroupInterrupt has stopped the group: move it there first"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {

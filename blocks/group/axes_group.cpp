@@ -53,7 +53,7 @@ void AxesGroup::scan(const Scan& now, const Context& context) {
 }
 
 void AxesGroup::run(const Context& context, double dt) {
-    const PathMotion motion = path.advance(ring, dt);
+    const PathMotion motion = path.advance(ring(), dt);
     lead(context, motion);
     publish(motion);
     if (path.lost) {
@@ -64,7 +64,11 @@ void AxesGroup::run(const Context& context, double dt) {
     }
     look_at_moves(context);
     if (!path.standing()) return;
-    if (interrupter.exists()) end(context, interrupter, Progress::done);
+    if (interrupter.exists()) {
+        const bool frees = interrupter.holds != 0;
+        end(context, interrupter, Progress::done);
+        if (frees) return leave_path(context);
+    }
     if (braking != 0 || (path.finished() && queue.first == nowhere)) come_to_stand(context);
 }
 
@@ -156,6 +160,20 @@ PathVector AxesGroup::actual_position(const Context& context) const {
     PathVector out{};
     for (std::size_t i = 0; i < most_path_axes; ++i)
         if (const Axis* const seen = axis(context, i)) out[i] = seen->actual().position;
+    return out;
+}
+
+PathVector AxesGroup::actual_velocity(const Context& context) const {
+    PathVector out{};
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (const Axis* const seen = axis(context, i)) out[i] = seen->actual().velocity;
+    return out;
+}
+
+PathVector AxesGroup::set_position(const Context& context) const {
+    PathVector out{};
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (const Axis* const seen = axis(context, i)) out[i] = seen->position;
     return out;
 }
 

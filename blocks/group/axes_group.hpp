@@ -35,10 +35,18 @@ struct AxesGroup {
         std::int64_t place = nowhere;  ///< of its job, nowhere: none
         std::int64_t ticket = 0;
         GroupCommand command = GroupCommand::none;
-        std::int64_t holds = 0;     ///< Execute of MC_GroupStop
+        std::int64_t holds = 0;     ///< Execute of MC_GroupStop, FreesGroup of MC_GroupInterrupt
         std::int64_t told_end = 0;  ///< it is done, and still holds the group
 
         bool exists() const { return place != nowhere; }
+    };
+
+    /// A path that MC_GroupInterrupt has left, with its moves, for MC_GroupContinue.
+    struct Aside {
+        std::int64_t exists = 0;
+        JobList queue;
+        Path path;
+        PathVector position{}, end_point{};  ///< where it goes on, and ends
     };
 
     std::array<std::int64_t, most_path_axes> axes{nowhere, nowhere, nowhere,
@@ -49,14 +57,17 @@ struct AxesGroup {
     Holder overriding;   ///< the MC_GroupSetOverride whose factor counts
     Holder resetter;     ///< MC_GroupReset, until all stand
     Path path;
-    std::array<PathPiece, look_ahead> ring{};
+    Aside aside;
+    std::array<std::array<PathPiece, look_ahead>, 2> rings{};
+    std::int64_t ring_in_use = 0;  ///< of the path; the other one is that of the path aside
     PathFrame frame;               ///< of the product, for moves that are taken up from now on
     PathVector position{};         ///< set-point
     PathVector end_point{};        ///< of the last piece in the path
     PathVector turned{};           ///< of each axis' own position against the one it shows (modulo)
     std::int64_t following = 0;    ///< the axes follow the path
     std::int64_t braking = 0;      ///< to standstill, where the path is given up
-    std::int64_t interrupted = 0;  ///< until MC_GroupContinue
+    std::int64_t interrupted = 0;  ///< until MC_GroupContinue, or until it is left
+    std::int64_t has_power = 0;    ///< MC_GroupPower switches it on, also of axes that join
     std::int64_t task = 0, scan_index = 0, time = 0;  ///< of the scan under way; [ns]
     std::int64_t started = 0;
 
@@ -74,6 +85,8 @@ struct AxesGroup {
 
     /// Of the axes, by the drives where they have some; 0 where there is none.
     PathVector actual_position(const Context& context) const;
+    PathVector actual_velocity(const Context& context) const;
+    PathVector set_position(const Context& context) const;
 
     /// All of its axes are, and there are some.
     bool is_powered(const Context& context) const;
@@ -83,6 +96,9 @@ struct AxesGroup {
         return coordinates == CoordSystem::product ? frame : PathFrame{};
     }
     bool is_in_path() const { return following != 0 && !path.finished(); }
+
+    std::span<PathPiece> ring() { return rings[static_cast<std::size_t>(ring_in_use)]; }
+    std::span<const PathPiece> ring() const { return rings[static_cast<std::size_t>(ring_in_use)]; }
 
   private:
     // axes_group.cpp: time passes.
@@ -110,6 +126,9 @@ struct AxesGroup {
     void switch_power(const Context& context, const GroupRequest& request);
     void begin_interrupt(const Context& context, GroupJob& job);
     MotionError go_on(const Context& context);
+    void leave_path(const Context& context);
+    MotionError return_to_path(const Context& context);
+    void forget_path_aside(const Context& context);
     void hold(const Context& context, GroupJob& job);
     void begin_reset(const Context& context, GroupJob& job);
     void finish_reset(const Context& context);
@@ -144,7 +163,7 @@ struct AxesGroup {
     MotionError append(const Context& context, const GroupRequest& request, const PathCurve& curve,
                        bool is_within);
     bool has_room(std::size_t pieces) const {
-        return path.count - path.first + pieces + 1 <= ring.size();
+        return path.count - path.first + pieces + 1 <= look_ahead;
     }
 };
 

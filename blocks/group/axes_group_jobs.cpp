@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "blocks/group/axes_group.hpp"
 
@@ -19,7 +20,8 @@ PathLimit braking_of(const GroupRequest& request) {
 void AxesGroup::send(const Context& context, const Scan& now, GroupJob& job) {
     job.task = context.task;
     job.scan = now.index;
-    if (job.in == JobPlace::queue) unlink(context, job, queue);
+    if (job.in == JobPlace::queue) unlink(context, job, job.is_aside != 0 ? aside.queue : queue);
+    job.is_aside = 0;
     if (job.in != JobPlace::inbox) link(context, job, inbox, JobPlace::inbox);
 }
 
@@ -100,8 +102,10 @@ MotionError AxesGroup::add_axis(const Context& context, const GroupRequest& requ
     if (added.unit != (place < path_space ? unit : AxisUnit::deg))
         return MotionError::unit_of_group;
     if (added.started == 0 || added.task != task) return MotionError::task_of_group;
+    forget_path_aside(context);
     axes[place] = request.axis;
     added.group = context.place_of(*this);
+    if (has_power != 0) added.switch_power_by_group(context, {time}, true);
     return MotionError::none;
 }
 
@@ -110,6 +114,7 @@ MotionError AxesGroup::remove_axis(const Context& context, const GroupRequest& r
         return MotionError::out_of_range;
     if (following != 0) return MotionError::wrong_state;
     const auto place = static_cast<std::size_t>(request.place - 1);
+    forget_path_aside(context);
     if (Axis* const removed = axis(context, place)) removed->group = nowhere;
     axes[place] = nowhere;
     if (axis_count() == 0 && state == GroupState::standby) state = GroupState::disabled;
@@ -139,6 +144,7 @@ MotionError AxesGroup::enable() {
 /// In any state; what is in motion brakes on its path.
 void AxesGroup::disable(const Context& context) {
     abort_all(context, Progress::aborted);
+    forget_path_aside(context);
     end(context, resetter, Progress::aborted);
     if (following != 0) brake();
     error = false;
@@ -159,6 +165,7 @@ MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
 
 /// Without it an axis leaves the path that it is on.
 void AxesGroup::switch_power(const Context& context, const GroupRequest& request) {
+    has_power = request.holds;
     for (std::size_t i = 0; i < most_path_axes; ++i)
         if (Axis* const led = axis(context, i))
             led->switch_power_by_group(context, {time}, request.holds != 0);
@@ -177,16 +184,72 @@ void AxesGroup::begin_interrupt(const Context& context, GroupJob& job) {
     path.halt(braking_of(job.request));
     interrupted = 1;
     if (queue.first != nowhere) tell(context.at<GroupJob>(queue.first), Progress::waiting);
-    interrupter = {context.place_of(job), job.ticket, job.request.command};
+    interrupter = {context.place_of(job), job.ticket, job.request.command, job.request.holds};
     tell(job, Progress::active);
 }
 
 MotionError AxesGroup::go_on(const Context& context) {
-    if (interrupted == 0) return MotionError::wrong_state;
+    if (interrupted == 0) return return_to_path(context);
     end(context, interrupter, Progress::aborted);
     interrupted = 0;
     path.resume();
     return MotionError::none;
+}
+
+/// It stands: path and moves are put aside, and other moves may be made.
+void AxesGroup::leave_path(const Context& context) {
+    forget_path_aside(context);
+    aside = {1, queue, path, position, end_point};
+    for (std::int64_t place = queue.first; place != nowhere;) {
+        GroupJob& job = context.at<GroupJob>(place);
+        job.is_aside = 1;
+        place = job.next;
+    }
+    queue = {};
+    ring_in_use = 1 - ring_in_use;
+    path.clear();
+    end_point = position;
+    interrupted = 0;
+    publish({.path = {.position = distance}});
+    release(context);
+    state = GroupState::standby;
+}
+
+/// From where it was left, as exactly as positions are that have been read and moved to.
+MotionError AxesGroup::return_to_path(const Context& context) {
+    constexpr double nearly = 1e-6;
+    if (aside.exists == 0 || state != GroupState::standby) return MotionError::wrong_state;
+    find_axes(context);
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (!(std::abs(position[i] - aside.position[i]) <=
+              nearly * (1 + std::abs(aside.position[i]))))
+            return MotionError::not_where_interrupted;
+    if (const MotionError why = begin_to_follow(context); why != MotionError::none) return why;
+    const double factor = path.override;
+    queue = aside.queue;
+    path = aside.path;
+    end_point = aside.end_point;
+    for (std::int64_t place = queue.first; place != nowhere;) {
+        GroupJob& job = context.at<GroupJob>(place);
+        job.is_aside = 0;
+        place = job.next;
+    }
+    aside = {};
+    ring_in_use = 1 - ring_in_use;
+    path.set_override(factor);
+    path.resume();
+    state = GroupState::moving;
+    return MotionError::none;
+}
+
+void AxesGroup::forget_path_aside(const Context& context) {
+    while (aside.queue.first != nowhere) {
+        GroupJob& job = context.at<GroupJob>(aside.queue.first);
+        unlink(context, job, aside.queue);
+        job.is_aside = 0;
+        tell(job, Progress::aborted);
+    }
+    aside = {};
 }
 
 /// MC_GroupStop and MC_GroupHalt.

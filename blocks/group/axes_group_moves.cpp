@@ -186,7 +186,7 @@ MotionError AxesGroup::append(const Context& context, const GroupRequest& reques
     if (following == 0)
         if (const MotionError why = begin_to_follow(context); why != MotionError::none) return why;
     const PathFault fault =
-        path.append(ring, curve, limits, joint_of(request, is_within, curve, limits));
+        path.append(ring(), curve, limits, joint_of(request, is_within, curve, limits));
     if (fault == PathFault::none) end_point = curve.end;
     return motion_error_of(fault);
 }
@@ -231,7 +231,7 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     if (path.finished()) return {};
     PathJoint joint;
     if (!is_within && request.mode <= BufferMode::buffered) joint.velocity = 0;
-    const PathPiece& last = ring[(path.count - 1) % ring.size()];
+    const PathPiece& last = ring()[(path.count - 1) % look_ahead];
     const PathCurve& before = last.curve;
     joint.blend = is_within ? PathBlend::low : blend_of(request.mode);
     const bool lines = before.kind == PathCurveKind::line && curve.kind == PathCurveKind::line;

@@ -19,7 +19,7 @@ bool AxesGroup::goes_on(const GroupJob& job) const {
 
 /// The curve that the next row goes on from, in the coordinates of its move.
 PathCurve AxesGroup::last_curve(const GroupJob& job) const {
-    return goes_on(job) ? job.frame.inverse().curve(ring[(path.count - 1) % ring.size()].curve)
+    return goes_on(job) ? job.frame.inverse().curve(ring()[(path.count - 1) % look_ahead].curve)
                         : PathCurve{};
 }
 

@@ -39,6 +39,22 @@ void GroupStop::scan(const Scan& now, const Context& context) {
     context.instance<AxesGroup>(group).send(context, now, job);
 }
 
+std::span<const Field> GroupInterrupt::fields() {
+    static const auto fields = [] {
+        auto inputs = group_pin::braking();
+        inputs.push_back(input("FreesGroup", &GroupInterrupt::frees_group, "",
+                               "once it stands the group takes other moves, and MC_GroupContinue "
+                               "goes on after one to where it stood"));
+        return group_pin::table({inputs}, "the group stands");
+    }();
+    return fields;
+}
+
+void GroupInterrupt::scan(const Scan& now, const Context& context) {
+    pins.holds = frees_group ? 1 : 0;
+    run(now, context);
+}
+
 std::span<const Field> GroupSetOverride::fields() {
     using B = GroupSetOverride;
     static const Field table[] = {

@@ -47,6 +47,18 @@ struct GroupPower : GroupCommandBlock {
     void scan(const Scan& now, const Context& context);
 };
 
+/// MC_GroupInterrupt. Beyond the standard: FreesGroup lets the group take other moves once it
+/// stands, as SoftMotion's continueData does.
+struct GroupInterrupt : GroupCommandBlock {
+    bool frees_group = false;
+
+    static constexpr std::string_view type = "MC_GroupInterrupt";
+    static constexpr std::string_view doc = "stops a group on its path, which it keeps";
+    static std::span<const Field> fields();
+    constexpr GroupInterrupt() { pins.command = GroupCommand::interrupt; }
+    void scan(const Scan& now, const Context& context);
+};
+
 namespace group_kinds {
 
 std::span<const Field> remove_axis_fields();
@@ -66,9 +78,6 @@ inline constexpr GroupCommandKind reset{GroupCommand::reset, "MC_GroupReset",
                                         "ends the error of a group and of its axes", plain_fields};
 inline constexpr GroupCommandKind halt{GroupCommand::halt, "MC_GroupHalt",
                                        "stops a group on its path", standing_fields};
-inline constexpr GroupCommandKind interrupt{GroupCommand::interrupt, "MC_GroupInterrupt",
-                                            "stops a group on its path, which it keeps",
-                                            standing_fields};
 inline constexpr GroupCommandKind go_on{GroupCommand::go_on, "MC_GroupContinue",
                                         "lets an interrupted group go on", plain_fields};
 
@@ -84,7 +93,6 @@ using GroupEnable = PlainGroupCommand<group_kinds::enable>;
 using GroupDisable = PlainGroupCommand<group_kinds::disable>;
 using GroupReset = PlainGroupCommand<group_kinds::reset>;
 using GroupHalt = PlainGroupCommand<group_kinds::halt>;
-using GroupInterrupt = PlainGroupCommand<group_kinds::interrupt>;
 using SetCartesianTransform = PlainGroupCommand<group_kinds::set_transform>;
 using GroupContinue = PlainGroupCommand<group_kinds::go_on>;
 

@@ -18,6 +18,16 @@ void GroupCommandBlock::start(const Scan& now, const Context& context) {
     context.instance<AxesGroup>(group).send(context, now, job);
 }
 
+std::string GroupCommandBlock::why(const Context&, const NameOf&) const {
+    if (error_id != MotionError::wrong_state) return std::string(text_of(error_id));
+    if (pins.command == GroupCommand::go_on)
+        return "nothing is interrupted, or the group moves: MC_GroupContinue goes on where "
+               "MC_GroupInterrupt has stopped it";
+    return "the command does not go with what the group is doing; `lineshaft states` says what "
+           "each "
+           "of its states takes";
+}
+
 MotionError GroupCommandBlock::check() const {
     if (group == nowhere) return MotionError::no_group;
     for (const PathVector& vector : {pins.target, pins.auxiliary})

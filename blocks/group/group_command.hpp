@@ -24,7 +24,7 @@ struct GroupCommandBlock : CommandState {
     void run(const Scan& now, const Context& context);
     void start(const Scan& now, const Context& context);
 
-    std::string why(const Context&, const NameOf&) const { return std::string(text_of(error_id)); }
+    std::string why(const Context&, const NameOf&) const;
     MotionError check() const;
 };
 

@@ -44,7 +44,7 @@ struct GroupRequest {
     PathVector target{};     ///< position or distance; of a transformation shift and angles [deg]
     PathVector auxiliary{};  ///< AuxPoint
     double velocity = -1, acceleration = -1, deceleration = -1, jerk = -1;
-    std::int64_t holds = 0;                  ///< Execute of MC_GroupStop, Enable of MC_GroupPower
+    std::int64_t holds = 0;  ///< Execute of MC_GroupStop, Enable of MC_GroupPower, FreesGroup
     std::int64_t axis = nowhere, place = 1;  ///< of MC_AddAxisToGroup; IdentInGroup
     std::int64_t table = nowhere;            ///< of MC_MovePath
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< override
@@ -59,8 +59,9 @@ struct GroupJob : JobState {
     PathFrame frame;  ///< of a move: where its coordinates stand, since it was taken up
     std::int64_t first_piece = 0, end_piece = 0;
     std::int64_t rows = 0;
-    PathVector start{};        ///< of a table: where it begins, in the coordinates of its points
-    std::int64_t is_laid = 0;  ///< all of it is in the path
+    PathVector start{};         ///< of a table: where it begins, in the coordinates of its points
+    std::int64_t is_laid = 0;   ///< all of it is in the path
+    std::int64_t is_aside = 0;  ///< in the queue of a path that has been left for others
 
     constexpr GroupJob() { whom = JobFor::group; }
 };

@@ -1,5 +1,6 @@
 #include "blocks/group/group_reads.hpp"
 
+#include <array>
 #include <vector>
 
 namespace lineshaft {
@@ -26,6 +27,23 @@ std::vector<Field> group_read_table() {
             output("Busy", &B::busy, "", "the block looks at the group"),
             output("Error", &B::error, "", "there is nothing to tell"),
             output("ErrorID", &B::error_id, "", "why").one_of(motion_error_names)};
+}
+
+/// ... and a number for each axis, by the axes' places in the group.
+std::vector<Field> group_vector_table(std::string_view unit, std::string_view rotary,
+                                      const std::array<std::string_view, most_path_axes>& names) {
+    auto fields = group_read_table();
+    fields.push_back(input("CoordSystem", &GroupReadVector::coordinates, "",
+                           "of the numbers: the machine's, or the product's")
+                         .one_of(coord_system_names));
+    const std::size_t first = detail::offset_of(&GroupReadVector::value);
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        Field f =
+            element(names[i], "of the axis in that place", Type::real, first + i * sizeof(double));
+        f.unit = i < path_space ? unit : rotary;
+        fields.push_back(f);
+    }
+    return fields;
 }
 
 }  // namespace
@@ -83,28 +101,36 @@ void GroupReadError::scan(const Scan&, const Context& context) {
 }
 
 std::span<const Field> GroupReadActualPosition::fields() {
-    static const auto table = [] {
-        constexpr std::string_view names[] = {"Position1", "Position2", "Position3",
-                                              "Position4", "Position5", "Position6"};
-        auto fields = group_read_table();
-        fields.push_back(input("CoordSystem", &GroupReadActualPosition::coordinates, "",
-                               "of the positions: the machine's, or the product's")
-                             .one_of(coord_system_names));
-        const std::size_t first = detail::offset_of(&GroupReadActualPosition::position);
-        for (std::size_t i = 0; i < most_path_axes; ++i) {
-            Field f = element(names[i], "of the axis in that place", Type::real,
-                              first + i * sizeof(double));
-            f.unit = i < path_space ? "{AxesGroup}" : "deg";
-            fields.push_back(f);
-        }
-        return fields;
-    }();
+    static const auto table = group_vector_table(
+        "{AxesGroup}", "deg",
+        {"Position1", "Position2", "Position3", "Position4", "Position5", "Position6"});
     return table;
 }
 
 void GroupReadActualPosition::scan(const Scan&, const Context& context) {
     if (const AxesGroup* seen = look(context))
-        position = seen->frame_of(coordinates).inverse().place(seen->actual_position(context));
+        value = seen->frame_of(coordinates).inverse().place(seen->actual_position(context));
+}
+
+std::span<const Field> GroupReadSetPosition::fields() {
+    return GroupReadActualPosition::fields();
+}
+
+void GroupReadSetPosition::scan(const Scan&, const Context& context) {
+    if (const AxesGroup* seen = look(context))
+        value = seen->frame_of(coordinates).inverse().place(seen->set_position(context));
+}
+
+std::span<const Field> GroupReadActualVelocity::fields() {
+    static const auto table = group_vector_table(
+        "{AxesGroup}/s", "deg/s",
+        {"Velocity1", "Velocity2", "Velocity3", "Velocity4", "Velocity5", "Velocity6"});
+    return table;
+}
+
+void GroupReadActualVelocity::scan(const Scan&, const Context& context) {
+    if (const AxesGroup* seen = look(context))
+        value = seen->frame_of(coordinates).inverse().direction(seen->actual_velocity(context));
 }
 
 }  // namespace lineshaft

@@ -36,13 +36,33 @@ struct GroupReadError : GroupReadBlock {
     void scan(const Scan& now, const Context& context);
 };
 
-/// MC_GroupReadActualPosition: of the drives where the axes have some.
-struct GroupReadActualPosition : GroupReadBlock {
+/// A number for each axis.
+struct GroupReadVector : GroupReadBlock {
     CoordSystem coordinates = CoordSystem::machine;
-    PathVector position{};
+    PathVector value{};
+};
 
+/// MC_GroupReadActualPosition: of the drives where the axes have some.
+struct GroupReadActualPosition : GroupReadVector {
     static constexpr std::string_view type = "MC_GroupReadActualPosition";
     static constexpr std::string_view doc = "tells where the axes of a group are";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_GroupReadSetPosition, beyond the standard: set-points, as SMC_GroupReadSetPosition of
+/// SoftMotion has them.
+struct GroupReadSetPosition : GroupReadVector {
+    static constexpr std::string_view type = "MC_GroupReadSetPosition";
+    static constexpr std::string_view doc = "tells where the axes of a group are to be";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+};
+
+/// MC_GroupReadActualVelocity: of the drives where the axes have some.
+struct GroupReadActualVelocity : GroupReadVector {
+    static constexpr std::string_view type = "MC_GroupReadActualVelocity";
+    static constexpr std::string_view doc = "tells how fast the axes of a group are";
     static std::span<const Field> fields();
     void scan(const Scan& now, const Context& context);
 };

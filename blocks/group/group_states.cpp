@@ -23,7 +23,7 @@ constexpr GroupStateRow group_rows[] = {
     {G::stop,                   "MC_GroupStop",               {no,  Stp, Stp, Stp, no,  no }},
     {G::halt,                   "MC_GroupHalt",               {no,  Mov, Mov, no,  no,  no }},
     {G::interrupt,              "MC_GroupInterrupt",          {no,  no,  Mov, no,  no,  no }},
-    {G::go_on,                  "MC_GroupContinue",           {no,  no,  Mov, no,  no,  no }},
+    {G::go_on,                  "MC_GroupContinue",           {no,  Mov, Mov, no,  no,  no }},
     {G::set_override,           "MC_GroupSetOverride",        {Dis, Sby, Mov, Hom, Stp, Err}},
     {G::set_transform,          "MC_SetCartesianTransform",   {Dis, Sby, Mov, Hom, Stp, Err}},
     {G::power,                  "MC_GroupPower",              {Dis, Sby, Mov, Hom, Stp, Err}},

@@ -93,23 +93,23 @@ bool is_valid(const PathStretch& stretch, std::uint64_t number, const Path& path
 }
 
 /// Pieces and stretches under way are in the ring.
-bool is_valid(const Path& path, const AxesGroup& group) {
+bool is_valid(const Path& path, std::span<const PathPiece> ring) {
     constexpr std::uint64_t most = std::uint64_t{1} << 62;
-    if (path.count > most || path.first > path.count ||
-        path.count - path.first > group.ring.size() || path.stretch > path.stretches ||
-        path.stretches - path.stretch > path.count - path.first ||
+    if (path.count > most || path.first > path.count || path.count - path.first > ring.size() ||
+        path.stretch > path.stretches || path.stretches - path.stretch > path.count - path.first ||
         !are_booleans(path.halted, path.stale, path.fresh, path.lost) ||
         !is_valid(path.leg, path) || !std::isfinite(path.time) || path.time < 0)
         return false;
     for (std::uint64_t k = path.first; k < path.count; ++k)
-        if (!is_valid(group.ring[k % group.ring.size()])) return false;
+        if (!is_valid(ring[k % ring.size()])) return false;
     for (std::uint64_t k = path.stretch; k < path.stretches; ++k)
-        if (!is_valid(group.ring[k % group.ring.size()].stretch, k, path)) return false;
+        if (!is_valid(ring[k % ring.size()].stretch, k, path)) return false;
     return true;
 }
 
 bool lists_are_valid(const AxesGroup& group, const KeptState& machine) {
-    return lists_are_valid(group.inbox, group.queue, JobFor::group, machine);
+    return lists_are_valid(group.inbox, group.queue, JobFor::group, machine) &&
+           lists_are_valid({}, group.aside.queue, JobFor::group, machine);
 }
 
 /// In one list of one group, or in none.
@@ -121,7 +121,7 @@ bool is_where_it_says(const GroupJob& job, const KeptState& machine) {
         if (!is_instance<AxesGroup>(context, n)) continue;
         const AxesGroup& group = context.instance<AxesGroup>(n);
         lists += leads_to(group.inbox, place, machine);
-        lists += leads_to(group.queue, place, machine);
+        lists += leads_to(job.is_aside != 0 ? group.aside.queue : group.queue, place, machine);
     }
     return lists == (job.in == JobPlace::no_list ? 0 : 1);
 }
@@ -131,7 +131,10 @@ bool is_where_it_says(const GroupJob& job, const KeptState& machine) {
 bool is_valid(const AxesGroup& group, const KeptState& machine) {
     for (const std::int64_t axis : group.axes)
         if (!is_block_or_none<Axis>(axis, machine)) return false;
-    return is_valid(group.frame) && is_valid(group.path, group) &&
+    return is_valid(group.frame) && (group.ring_in_use == 0 || group.ring_in_use == 1) &&
+           is_valid(group.path, group.ring()) &&
+           is_valid(group.aside.path,
+                    group.rings[static_cast<std::size_t>(1 - group.ring_in_use)]) &&
            is_valid(group.holder, machine) && is_valid(group.interrupter, machine) &&
            is_valid(group.overriding, machine) && is_valid(group.resetter, machine) &&
            machine.is_task(group.task) && is_count(group.scan_index) &&
@@ -139,7 +142,7 @@ bool is_valid(const AxesGroup& group, const KeptState& machine) {
 }
 
 void mend(AxesGroup& group, const KeptState& machine) {
-    if (!lists_are_valid(group, machine)) group.inbox = group.queue = {};
+    if (!lists_are_valid(group, machine)) group.inbox = group.queue = group.aside.queue = {};
 }
 
 bool is_valid(const GroupCommandBlock& command, const KeptState& machine) {

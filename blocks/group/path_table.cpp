@@ -127,7 +127,10 @@ std::span<const TableField> PathTable::tables() {
     };
     static const TableField all[] = {[] {
         TableField points = lineshaft::table("points", &PathTable::table, columns,
-                                             "the path, point by point, or a CSV file");
+                                             "the path, point by point, or a CSV file whose first "
+                                             "line names these columns, position1 at least; a "
+                                             "longer path is two tables, the second with an "
+                                             "MC_MovePath of BufferMode mcBlendingLow");
         points.needed = 2;
         points.complete = [](std::byte* block) {
             return std::launder(reinterpret_cast<PathTable*>(block))->complete();

@@ -112,8 +112,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, leg))
         into =
             path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
-    if (path.halted && brakes_harder(outlook, base))
-        into = halt_harder(path, outlook, from, into, leg);
+    if (path.halted) into = halt_harder(path, outlook, from, into, leg);
     if (into == IntoBoxes::none) return false;
     if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg);
     path.leg = leg;
@@ -369,10 +368,13 @@ void Path::clear() {
 PathMotion Path::advance(std::span<PathPiece> ring, double dt) {
     if (finished() || lost) return now(ring);
     const bool is_ripe = fresh && time + dt >= leg.ripe;
-    if (!stale && is_ripe && leg.course.count > 0)
+    if (!stale && is_ripe && leg.course.count > 0) {
         go_on(*this, ring);
-    else if ((stale || is_ripe) && !plan_anew(*this, ring))
+    } else if ((stale || is_ripe) && !plan_anew(*this, ring)) {
         stale = true;
+        lost = standing() && factor_of(*this) > 0;
+    }
+    if (lost) return now(ring);
     time += dt;
     while (!finished() && !lost && at_end_of_stretch(*this, ring)) enter_next(*this, ring);
     if (standing()) time = leg.duration();

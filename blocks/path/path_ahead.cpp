@@ -120,7 +120,7 @@ std::uint64_t stretch_at(const ConstPathStretches& stretches, double place) {
 
 /// A ramp to a velocity, and what goes on from there.
 bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, double velocity,
-              const PathLimit& limit, PathLeg& out, const PathLimit& braking = no_braking) {
+              const PathLimit& limit, PathLeg& out, const PathLimit* braking = nullptr) {
     VelocityRamp ramp;
     if (ramp.plan(from.velocity, from.acceleration, velocity, limit.acceleration, limit.jerk) !=
         PlanResult::ok)
@@ -215,23 +215,16 @@ IntoBoxes plan_into_boxes(const PathOutlook& outlook, const MotionState& from, d
     return IntoBoxes::none;
 }
 
-bool brakes_harder(const PathOutlook& outlook, double base) {
-    const PathPieces pieces = from_place(outlook.pieces, base);
-    const PathLimit own = pieces[pieces.first].limits.path;
-    const PathLimit halt = braking_limit(own, outlook.halt);
-    return halt.acceleration > own.acceleration || halt.jerk > own.jerk;
-}
-
 IntoBoxes plan_harder_halt(const PathOutlook& outlook, const MotionState& from, double base,
                            double within, PathLeg& out) {
-    const PathLimit braking = braking_limit(no_braking, outlook.halt);
+    const PathLimit braking = braking_limit({0, 0, 0}, outlook.halt);
     const double stop = way_to(from, 0, least_on_way(outlook, base, base, outlook.halt));
     const double to = base + (std::isfinite(stop) ? stop : 0);
     const PathLimit all = least_on_way(outlook, base, to, outlook.halt);
     for (const double part : {1.0, 0.8, 0.6, 0.45, 0.3, 0.2, 0.1}) {
         PathLeg leg;
         const PathLimit limit{all.velocity, part * all.acceleration, part * all.jerk};
-        if (!try_ramp(outlook, from, base, 0, limit, leg, braking)) continue;
+        if (!try_ramp(outlook, from, base, 0, limit, leg, &braking)) continue;
         if (!(leg.duration() < within)) return IntoBoxes::none;
         out = leg;
         return part == 1 ? IntoBoxes::soon : IntoBoxes::late;

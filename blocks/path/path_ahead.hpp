@@ -29,11 +29,9 @@ enum class IntoBoxes : std::int64_t { none, late, soon };
 IntoBoxes plan_into_boxes(const PathOutlook& outlook, const MotionState& from, double base,
                           PathLeg& out);
 
-/// The halt may come to more along the path than the piece at a place.
-bool brakes_harder(const PathOutlook& outlook, double base);
-
-/// A halt with acceleration and jerk of `halt` where those are more than the pieces', and within
-/// all other limits. `out` is unchanged where there is none that is over sooner than `within` [s].
+/// A halt that needs no box: with acceleration and jerk of `halt`, or else of the pieces, along the
+/// path, and within the limits of the axes. `out` is unchanged where there is none that is over
+/// sooner than `within` [s].
 IntoBoxes plan_harder_halt(const PathOutlook& outlook, const MotionState& from, double base,
                            double within, PathLeg& out);
 

@@ -32,10 +32,11 @@ struct PathSizes {
 /// A phase where it is on one piece.
 class PhaseOnPiece {
   public:
-    PhaseOnPiece(const PathPiece& on, const PathPhase& of, double along, const PathLimit& braking)
-        : piece(on), phase(of), offset(along), path(on.limits.path) {
-        path.acceleration = std::max(path.acceleration, braking.acceleration);
-        path.jerk = std::max(path.jerk, braking.jerk);
+    PhaseOnPiece(const PathPiece& on, const PathPhase& of, double along, const PathLimit* braking)
+        : piece(on), phase(of), offset(along), path(on.limits.path), halts(braking != nullptr) {
+        if (!halts) return;
+        path.acceleration = std::max(path.acceleration, braking->acceleration);
+        path.jerk = std::max(path.jerk, braking->jerk);
     }
 
     Instant at(double t) const;
@@ -46,6 +47,7 @@ class PhaseOnPiece {
     const PathPhase& phase;
     double offset;   ///< from the phase's positions to lengths of the piece's curve [u]
     PathLimit path;  ///< along it
+    bool halts;
 
     PathSizes sizes(const Instant& a, const Instant& b) const;
     bool goes_back(const Instant& a, const Instant& b) const;
@@ -147,7 +149,7 @@ double PhaseOnPiece::bound(const Instant& a, const Instant& b) const {
     if (goes_back(a, b)) return backwards;
     const PathSizes most = sizes(a, b);
     double out = of_path(most);
-    if (piece.curve.kind == PathCurveKind::corner) {
+    if (piece.curve.kind == PathCurveKind::corner && !halts) {
         PathLimit limit = path;
         limit.velocity = no_path_limit.velocity;
         out = std::max(out, quotient_of(size_in_space(a), size_in_space(b),
@@ -170,7 +172,7 @@ double PhaseOnPiece::quotient(const Instant& a, const Instant& b, int deep) cons
 }  // namespace
 
 bool keeps_limits(const PathPieces& pieces, const PathCourse& course, double base,
-                  std::span<double> quotients, const PathLimit& braking) {
+                  std::span<double> quotients, const PathLimit* braking) {
     constexpr int deepest = 5;
     constexpr double rounding = 1e-9;
     bool all = true;

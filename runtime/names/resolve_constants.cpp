@@ -119,11 +119,14 @@ void set_row(Resolving& to, const Instance& block, const TableField& table, cons
 
 bool has_room(const Resolving& to, const TableField& table, const Node& value, std::size_t rows) {
     if (rows > 0 && rows <= table.capacity) return true;
-    to.read.fail(code::number_out_of_range, value,
-                 rows == 0 ? fmt::format("'{}' has no rows", table.name)
-                           : fmt::format("'{}' has {} rows, more than its {}", table.name, rows,
-                                         table.capacity),
-                 rows == 0 ? fmt::format("it has from 1 to {} rows", table.capacity) : "");
+    to.read.fail(
+        code::number_out_of_range, value,
+        rows == 0
+            ? fmt::format("'{}' has no rows", table.name)
+            : fmt::format("'{}' has {} rows, more than its {}", table.name, rows, table.capacity),
+        rows == 0
+            ? fmt::format("it has from 1 to {} rows", table.capacity)
+            : std::string("put the rest into another block of its kind, which is run behind it"));
     return false;
 }
 

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/projects/project.hpp"
 #include "runtime/source/letters.hpp"
 #include "tools/lineshaft/block_text.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -93,6 +94,35 @@ bool describe_of_libraries(const Catalog& catalog, const std::string& name) {
     return any;
 }
 
+/// The first sentence above a head.
+std::string_view doc_of(std::string_view head) {
+    if (!head.starts_with("//")) return {};
+    const std::string_view line = head.substr(3, head.find('\n') - 3);
+    return line.substr(0, std::min(line.find(". "), line.find(": ")));
+}
+
+/// All that a library has, a line each; false: there is no such library.
+bool list_of_library(const Catalog& catalog, const std::string& name) {
+    bool any = false;
+    for (const LibraryFile& file : catalog.libraries()) {
+        if (lower(file.library) != lower(name)) continue;
+        any = true;
+        for (std::size_t at = 0; at != file.text.npos; at = file.text.find('\n', at + 1)) {
+            const std::string_view line = file.text.substr(at == 0 ? 0 : at + 1);
+            for (const std::string_view kind : {"FUNCTION_BLOCK ", "FUNCTION "}) {
+                if (!line.starts_with(kind)) continue;
+                const std::string_view rest = line.substr(kind.size());
+                const std::string called(rest.substr(0, rest.find_first_of(" \n\r;:")));
+                const std::string_view head = head_of(file.text, called);
+                if (!head.empty()) fmt::print("{:28} {}\n", called, doc_of(head));
+                break;
+            }
+        }
+    }
+    if (any) fmt::print("\nlineshaft blocks {}.NAME shows the pins of one.\n", name);
+    return any;
+}
+
 /// Other libraries that have it, with pins of their own.
 void name_libraries(const Catalog& catalog, const std::string& name) {
     std::string full;
@@ -106,7 +136,9 @@ void name_libraries(const Catalog& catalog, const std::string& name) {
 Exit describe(const Catalog& catalog, const std::vector<std::string>& words, bool json) {
     const BlockType* type = words.size() == 1 ? catalog.find(words.front()) : nullptr;
     if (!type) {
-        if (words.size() == 1 && !json && describe_of_libraries(catalog, words.front()))
+        if (words.size() == 1 && !json &&
+            (describe_of_libraries(catalog, words.front()) ||
+             list_of_library(catalog, words.front())))
             return Exit::fine;
         const Types types = found(catalog, words);
         const std::string_view instead =
@@ -128,11 +160,20 @@ Exit describe(const Catalog& catalog, const std::vector<std::string>& words, boo
     return Exit::fine;
 }
 
-/// As `Tc2_MC2.MC_MoveModulo`.
+/// A library such as `Siemens.Step7`, or what one has, as `Tc2_MC2.MC_MoveModulo`.
 bool is_of_library(const std::string& name) {
     return std::ranges::any_of(standard_blocks().libraries(), [&](const LibraryFile& file) {
-        return lower(name).starts_with(lower(file.library) + ".");
+        const std::string library = lower(file.library);
+        return lower(name) == library || lower(name).starts_with(library + ".");
     });
+}
+
+/// What is there, or is written as files of sources are.
+bool is_file(const std::string& name) {
+    std::error_code error;
+    if (is_of_library(name)) return false;
+    return std::filesystem::exists(name, error) || name.find('/') != name.npos ||
+           projects::is_source(name);
 }
 
 /// The kinds of block of the files; empty, and reported, when there is a mistake in them.
@@ -149,13 +190,7 @@ std::optional<Catalog> compiled(const std::vector<std::string>& files, bool json
 
 Exit execute(const BlocksCommand& command) {
     std::vector<std::string> files, types;
-    for (const std::string& name : command.names) {
-        std::error_code error;
-        const bool is_file =
-            (std::filesystem::path(name).has_extension() && !is_of_library(name)) ||
-            std::filesystem::is_directory(name, error);
-        (is_file ? files : types).push_back(name);
-    }
+    for (const std::string& name : command.names) (is_file(name) ? files : types).push_back(name);
     const auto catalog = files.empty() ? standard_blocks() : compiled(files, command.json);
     if (!catalog) return Exit::wrong;
     if (!types.empty()) return describe(*catalog, types, command.json);

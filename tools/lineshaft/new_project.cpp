@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -154,6 +155,52 @@ std::vector<NewBlock> named_blocks(const st::Library& library,
         }
     }
     return blocks;
+}
+
+/// Three linear axes for each group that the sources leave to the device tree.
+void fill_groups(const projects::Project& project, std::vector<NewBlock>& blocks) {
+    const auto adds_axes = [](const auto& source) {
+        return lower(source->text).find("mc_addaxistogroup") != std::string::npos;
+    };
+    if (std::ranges::any_of(project.sources, adds_axes)) return;
+    std::vector<NewBlock> axes, members;
+    for (NewBlock& group : blocks) {
+        if (group.type != "axes_group") continue;
+        group.note = "its axes are those of the device tree there: fit them, up to IdentInGroup 6";
+        for (int place = 1; place <= 3; ++place) {
+            const std::string name = fmt::format("{}_{}", group.name, "xyz"[place - 1]);
+            axes.push_back(axis(name, group.task));
+            members.push_back({name + "_member",
+                               "MC_AddAxisToGroup",
+                               group.task,
+                               {{"AxesGroup", group.name},
+                                {"Axis", name},
+                                {"IdentInGroup", std::to_string(place)},
+                                {"Execute", "true"}}});
+        }
+    }
+    std::ranges::move(axes, std::back_inserter(blocks));
+    std::ranges::move(members, std::back_inserter(blocks));
+}
+
+/// The limits of axes are in a device tree that is not read: as much as no program asks for. What
+/// TwinCAT and SCL leave open is the axis' own, so that those accelerations stay.
+void widen_limits(const projects::Project& project, std::vector<NewBlock>& blocks) {
+    const auto ends = [&](std::string_view ending) {
+        return std::ranges::any_of(project.sources, [&](const auto& source) {
+            const std::string path = lower(source->path);
+            const std::size_t dot = path.rfind('.');
+            return dot != path.npos && path.substr(dot).starts_with(ending);
+        });
+    };
+    if (ends(".scl") || ends(".s7") || ends(".db")) return;
+    const std::pair<std::string, std::string> wide[] = {{"default_velocity", "10000 mm/s"},
+                                                        {"default_acceleration", "100000 mm/s^2"},
+                                                        {"default_deceleration", "100000 mm/s^2"},
+                                                        {"default_jerk", "1e7 mm/s^3"}};
+    const std::span given(wide, ends(".tc") ? 1 : std::size(wide));
+    for (NewBlock& block : blocks)
+        if (block.type == "axis") block.given.insert(block.given.end(), given.begin(), given.end());
 }
 
 /// A block for each axis that a program or a list of globals keeps for itself, as TwinCAT links
@@ -425,10 +472,12 @@ std::string program_around(const std::string& path, const std::filesystem::path&
         return {};
     }
     std::vector<NewBlock> blocks = named_blocks(*library, programs);
+    fill_groups(project, blocks);
     std::vector<NewBlock> owners = lists_with_axes(*library, tasks.front().name);
     std::ranges::move(called_with_axes(*library, programs), std::back_inserter(owners));
     owners.insert(owners.end(), programs.begin(), programs.end());
     std::ranges::move(axes_of(*library, owners), std::back_inserter(blocks));
+    widen_limits(project, blocks);
     std::ranges::move(owners, std::back_inserter(blocks));
     const std::string name = file.stem().string();
     const std::vector<Field> addresses = addresses_of(*library);

@@ -292,14 +292,17 @@ Exit plan_lines(Lines& lines, Planner& planner, OutputFile& sink) {
         rows.clear();
         std::string_view line;
         bool too_long = false;
-        while (lines.next(line, too_long, got == Lines::Read::end))
+        while (lines.next(line, too_long, got == Lines::Read::end)) {
             if (!planner.line(line, too_long, rows)) return Exit::wrong;
+            if (interrupt_requested) return Exit::interrupted;
+        }
         sink.write(rows);
         sink.flush();
         if (!sink.error().empty()) break;
     }
     rows.clear();
     planner.finish(rows);
+    if (interrupt_requested) return Exit::interrupted;
     sink.write(rows);
     return planner.any_mistake() ? Exit::wrong : Exit::fine;
 }

@@ -1,12 +1,14 @@
 #include "tools/lineshaft/plan_path.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "blocks/path/path_cubic.hpp"
+#include "runtime/source/input_file.hpp"
 #include "tools/lineshaft/plan_cells.hpp"
 
 namespace lineshaft {
@@ -71,7 +73,7 @@ const std::string_view path_help =
     "of a path in the space of the axes, the first one its start. curve is line, arc (through the\n"
     "border), spline (of degree five) or cubic; rows of one number in the column path are one "
     "path.\n"
-    "A row each:\n"
+    "Numbers may have a unit, the same one in all rows of a column. A row each:\n"
     "  path,ok,error,points,pieces,length,duration\n"
     "or with --every one each so many seconds, and where the path ends:\n"
     "  path,time,distance,velocity,acceleration,jerk,position1..position6";
@@ -173,6 +175,20 @@ std::string PathPlanner::read_header(std::string_view text) {
     return {};
 }
 
+/// A number with the unit that all numbers of its column have, or with none.
+std::string PathPlanner::read_quantity(std::string_view cell, std::size_t column, double& value) {
+    const std::size_t blank = cell.rfind(' ');
+    const bool has_unit =
+        blank != cell.npos && std::isalpha(static_cast<unsigned char>(cell.back())) != 0;
+    const std::string unit(has_unit ? cell.substr(blank + 1) : "");
+    units_.resize(columns.size());
+    if (units_[column].value_or(unit) != unit)
+        return fmt::format("'{}' in column {} has another unit than the rows above", cell,
+                           columns[column]);
+    units_[column] = unit;
+    return read_number(has_unit ? trimmed(cell.substr(0, blank)) : cell, columns[column], value);
+}
+
 std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point, double& path) {
     std::array<double, columns.size()> value{};
     value[path_column] = path;
@@ -189,7 +205,7 @@ std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point
             if (!cell->empty())
                 point.kind = static_cast<PathPointKind>(found - std::begin(path_point_kind_names));
         } else if (column < first_border || !cell->empty()) {
-            const std::string wrong = read_number(*cell, columns[column], value[column]);
+            const std::string wrong = read_quantity(*cell, column, value[column]);
             if (!wrong.empty()) return wrong;
         }
     }
@@ -231,9 +247,10 @@ void PathPlanner::lay(std::string& rows) {
 }
 
 void PathPlanner::append(const PathCurve& curve, std::string& rows) {
-    while (!path_.lost && path_.count - path_.first + most_spline_parts + 1 > ring_.size())
+    while (!path_.lost && path_.count - path_.first + most_spline_parts + 1 > ring_.size() &&
+           !interrupt_requested)
         run(rows, false);
-    if (path_.lost) return;
+    if (path_.lost || interrupt_requested) return;
     PathJoint joint;
     if (!path_.finished())
         joint.distance = distance_within(options_.deviation,
@@ -254,7 +271,8 @@ double PathPlanner::next_step(bool to_end) const {
 /// Until there is room for more pieces, or to the end: from sample to sample, or leg to leg.
 void PathPlanner::run(std::string& rows, bool to_end) {
     const std::uint64_t first = path_.first;
-    while (!path_.finished() && !path_.lost && (to_end || path_.first == first)) {
+    while (!path_.finished() && !path_.lost && (to_end || path_.first == first) &&
+           !interrupt_requested) {
         if (options_.every == 0) {
             path_.advance(ring_, 0);
             const double step = next_step(to_end);

@@ -43,6 +43,7 @@ class PathPlanner {
 
     std::string read_header(std::string_view text);
     std::string read_point(std::string_view text, PathTablePoint& point, double& path);
+    std::string read_quantity(std::string_view cell, std::size_t column, double& value);
     void begin(std::string& rows);
     void lay(std::string& rows);
     void append(const PathCurve& curve, std::string& rows);
@@ -54,7 +55,8 @@ class PathPlanner {
     std::string file_;
     PathOptions options_;
     PathLimits limits_;
-    std::vector<std::size_t> order_;  ///< of the header's columns
+    std::vector<std::size_t> order_;                 ///< of the header's columns
+    std::vector<std::optional<std::string>> units_;  ///< of the columns that have been read
     bool has_header_ = false, mistakes_ = false;
     std::size_t number_ = 0;
 

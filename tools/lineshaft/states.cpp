@@ -21,6 +21,17 @@ constexpr const char* notes =
     "Without a command: a motion that ends at rest leads to standstill; MC_Stop does when it is\n"
     "done and its Execute false; an error of the axis leads from any state to error_stop.\n";
 
+constexpr const char* group_notes =
+    "MC_GroupContinue in standby goes on with a path that MC_GroupInterrupt with FreesGroup has "
+    "left.\n"
+    "While a group moves its axes are in synchronized_motion and refuse commands of their own, "
+    "MC_Stop\n"
+    "and MC_Halt too, with axis_in_group, but for MC_Power and MC_Reset: MC_GroupStop, "
+    "MC_GroupHalt or\n"
+    "MC_GroupInterrupt stops them. In standby they take them. Without power or with an error of "
+    "an axis\n"
+    "the group is in error_stop, and the others brake on the path.\n";
+
 std::string_view answer(const StateRow& row, std::size_t state) {
     if (row.next[state]) return axis_state_names[static_cast<std::size_t>(*row.next[state])];
     const bool waits =
@@ -51,6 +62,7 @@ void print_group_states() {
             fmt::print(" {:19}", next ? group_state_names[static_cast<std::size_t>(*next)] : "-");
         fmt::print("\n");
     }
+    fmt::print("\n{}", group_notes);
 }
 
 }  // namespace

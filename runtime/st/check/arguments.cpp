@@ -51,6 +51,17 @@ bool is_derived(const Type& given, const Type& type) {
            is_a(*given.routine, *type.routine);
 }
 
+/// What to do about a variable of another type.
+std::string help_of_given(const Expression& value, const Type& type, bool texts) {
+    if (texts) return "a VAR_IN_OUT of type STRING, without a length, takes any";
+    const bool hides =
+        type.kind == Kind::handle && value.kind == E::name && value.variable && value.variable->of;
+    if (!hides) return "";
+    return fmt::format(
+        "the variable '{}' hides a block of the program that has its name: give it another one",
+        value.variable->text);
+}
+
 /// A variable of type `given` stands for an output or a VAR_IN_OUT.
 void check_given(Checking& c, const Argument& argument, const Variable& parameter,
                  const Type& given) {
@@ -86,7 +97,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         c.fail(code::type_does_not_fit, value->place,
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
                            describe(given)),
-               texts ? "a VAR_IN_OUT of type STRING, without a length, takes any" : "");
+               help_of_given(*value, *type, texts));
 }
 
 }  // namespace

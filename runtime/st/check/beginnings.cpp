@@ -324,6 +324,7 @@ bool has_constructor(const Checking& c, const Type* type) {
 }
 
 void refuse_constructor_arguments(Checking& c, Place place, const Type& type) {
+    if (type.has_unknown_base || (type.routine && type.routine->has_unknown_base)) return;
     c.fail(code::wrong_arguments, place,
            fmt::format("{} takes no arguments behind its name", describe(type)),
            "a FUNCTION_BLOCK with a METHOD FB_init does: name : Block(argument := value)");

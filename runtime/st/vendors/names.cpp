@@ -19,7 +19,7 @@ constexpr Renamed types[] = {
      " to_axis to_speedaxis to_positioningaxis to_synchronousaxis axis_ref_sm3 "
      "axis_ref_virtual_sm3 mcaxistype "},
     {"cam_ref", " to_cam "},
-    {"axes_group_ref", " axis_group_ref_sm3 "},
+    {"axes_group_ref", " axis_group_ref_sm3 to_kinematics "},
     {"path_ref", " mc_path_ref "},
     {"ton", " ton_time ton_ltime lton iec_timer iec_ltimer "},
     {"tof", " tof_time tof_ltime ltof "},

@@ -105,7 +105,8 @@ class RandomGroup {
     static Type type_of(std::string_view pin) {
         for (const char* name : {"BufferMode", "TransitionMode", "CircMode", "PathChoice"})
             if (pin == name) return Type::enumeration;
-        return pin == "Execute" || pin == "Enable" ? Type::boolean : Type::real;
+        return pin == "Execute" || pin == "Enable" || pin == "FreesGroup" ? Type::boolean
+                                                                          : Type::real;
     }
 
     static std::span<const Kind> commands() {
@@ -130,7 +131,7 @@ class RandomGroup {
              "TransitionParameter"},
             {"path", "MC_MovePath",
              "Execute BufferMode TransitionMode TransitionParameter Velocity"},
-            {"interrupt", "MC_GroupInterrupt", "Execute"},
+            {"interrupt", "MC_GroupInterrupt", "Execute Execute FreesGroup"},
             {"go_on", "MC_GroupContinue", "Execute"},
             {"override", "MC_GroupSetOverride", "Enable VelFactor"},
             {"halt", "MC_GroupHalt", "Execute", true},

@@ -279,3 +279,32 @@ TEST_CASE("path: a harder halt is over sooner wherever it begins on a contour") 
         }
     CHECK(sum_of_harder < 0.5 * sum);
 }
+
+TEST_CASE("path: a halt in a corner takes no longer than on a line where the axes allow that") {
+    for (const PathLimit& halt : {PathLimit{1e300, 500, 10'000}, PathLimit{1e300, 100, 2000},
+                                  PathLimit{1e300, 3000, 60'000}, no_path_limit})
+        for (const double distance : {1.0, 10.0}) {
+            std::vector<PathPiece> ring(8);
+            Path path;
+            PathLimits limits = wide_limits({50, 500, 10'000});
+            PathCurve first, second;
+            REQUIRE(line_to({}, {100, 90, 10}, first) == PathFault::none);
+            REQUIRE(line_to(first.end, {150, 10, -20}, second) == PathFault::none);
+            REQUIRE(path.append(ring, first, limits) == PathFault::none);
+            REQUIRE(path.append(ring, second, limits, {1e300, distance, PathBlend::high}) ==
+                    PathFault::none);
+            while (path.first == 0) path.advance(ring, 1e-3);
+            path.advance(ring, 2e-3);
+            const double v = path.now(ring).path.velocity;
+            path.halt(halt);
+            limits.path.acceleration = std::min(halt.acceleration, 3000.0);
+            limits.path.jerk = std::min(halt.jerk, 60'000.0);
+            if (halt.acceleration > 1e200) limits = wide_limits({50, 500, 10'000});
+            const double a = limits.path.acceleration, j = limits.path.jerk;
+            double took = 0;
+            for (; !path.standing(); took += 1e-4) path.advance(ring, 1e-4);
+            const double by_hand = v * j > a * a ? v / a + a / j : 2 * std::sqrt(v / j);
+            INFO(distance << ' ' << halt.acceleration << ' ' << v);
+            CHECK(took < 1.02 * by_hand + 2e-3);
+        }
+}

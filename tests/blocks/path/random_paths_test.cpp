@@ -226,6 +226,34 @@ TEST_CASE("path: a greater exit that lowers an entry leaves no ramp that ends fa
     CHECK(fault_of(200884, 500).empty());
 }
 
+TEST_CASE("path: lines of any length end, or are known to be beyond planning") {
+    Random random(11);
+    std::array<int, 2> planned{};
+    for (int n = 0; n < 2000; ++n) {
+        const double length = random.decades(-320, 300), spread = n % 2 == 0 ? 0 : 100;
+        PathLimits limits =
+            wide_limits({random.decades(-spread, spread), random.decades(-spread, spread),
+                         random.decades(-spread, spread)});
+        limits.axes.fill(no_path_limit);
+        PathCurve curve;
+        std::array<PathPiece, 4> ring;
+        Path path;
+        if (line_to({}, {length}, curve) != PathFault::none ||
+            path.append(ring, curve, limits) != PathFault::none)
+            continue;
+        path.advance(ring, 0);
+        for (int step = 0; step < 8 && !path.finished() && !path.lost; ++step)
+            path.advance(ring, path.leg.duration() - path.time);
+        INFO(length << ' ' << limits.path.velocity);
+        CHECK((path.finished() || path.lost));
+        ++planned[path.lost ? 0 : 1];
+        if (path.finished()) CHECK(path.now(ring).position[0] == length);
+        if (length > 1e-60 && length < 1e60 && spread == 0) CHECK_FALSE(path.lost);
+    }
+    CHECK(planned[0] > 100);
+    CHECK(planned[1] > 100);
+}
+
 TEST_CASE("path: random paths keep all limits and end exactly") {
     const long first = number_of("LINESHAFT_SEED", 0);
     const long count = number_of("LINESHAFT_PATHS", 120);
