@@ -1265,6 +1265,7 @@ def check_packages_beside():
     write("packages/top/test/top.st", "USING AxUnit.Assert;\nUSING X.Stem;\n{TestFixture}\nCLASS T\nVAR PROTECTED stem : Stem; END_VAR\n"
           "{Test}\nMETHOD PUBLIC Counts\nEqual(expected := 4, actual := stem.Four());\nEND_METHOD\nEND_CLASS\n")
     run("check", "packages/top")
+    assert "1 of 1 passed" in run("test", "packages/top")
     run("new", "of_packages", "--from", "packages/top")
     (work / "packages/leaf/apax.yml").write_text("name: another\n")
     assert "there is no namespace 'X.Leaf'" in run("check", "packages/top", code=2)

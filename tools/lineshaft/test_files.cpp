@@ -8,6 +8,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/fit/fit.hpp"
 #include "runtime/program/whole_project.hpp"
+#include "runtime/projects/apax.hpp"
 #include "runtime/projects/fixtures.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/run/single_run.hpp"
@@ -116,6 +117,8 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
     for (const std::string& source : more) add_sources(*pool, source, true);
     if (fs::is_directory(path)) {
         add_sources(*pool, path, true);
+        for (const fs::path& package : projects::packages_beside(path))
+            add_sources(*pool, (package / "src").string(), true);
     } else if (is_of_project(path)) {
         for (const auto& source : project_of(path).sources) pool->add(source);
         add_sources(*pool, fs::path(path).parent_path().string(), true);
