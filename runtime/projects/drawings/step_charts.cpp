@@ -322,11 +322,13 @@ bool names(std::string_view text, std::string_view word) {
     return false;
 }
 
-/// Those that the chart looks at, which the block does not declare, and which are written about.
-void declare_flags(const XmlFile& file, MadeVariables& variables, pugi::xml_node pou) {
+/// Those that the chart, of the block or of one of its actions, looks at, which the block does not
+/// declare, and which are written about.
+void declare_flags(const XmlFile& file, MadeVariables& variables, pugi::xml_node body,
+                   pugi::xml_node pou) {
     const Archive archive(file);
-    const pugi::xml_node used =
-        Archive::member(Archive::root(pou.child("ObjectProperties")), "Flags");
+    const pugi::xml_node properties = body.parent().parent().child("ObjectProperties");
+    const pugi::xml_node used = Archive::member(Archive::root(properties), "Flags");
     const std::string declared = lower(file.plain(pou.child("Declaration")));
     const std::string text = lower(file.text());
     const Nodes entries = Archive::items(used);
@@ -352,7 +354,7 @@ Excerpts text_of_step_chart(const XmlFile& file, Diagnostics& out, MadeVariables
                 "save it anew in TwinCAT, or leave it out");
         return {};
     }
-    declare_flags(file, variables, pou);
+    declare_flags(file, variables, body, pou);
     return StepChart(file, out, pou).read(root);
 }
 

@@ -75,6 +75,14 @@ struct Read {
     std::string text, messages;
 };
 
+/// SFCInit, SFCPause, SFCTip and SFCTipMode are used.
+const std::string flags =
+    "<ObjectProperties><XmlArchive><Data><o t=\"SFCProperty\"><d2 n=\"Flags\"><v>Init</v><o><v "
+    "n=\"Use\">true</v><v n=\"Declare\">true</v></o><v>Pause</v><o><v n=\"Use\">true</v><v "
+    "n=\"Declare\">true</v></o><v>Tip</v><o><v n=\"Use\">true</v><v "
+    "n=\"Declare\">true</v></o><v>TipMode</v><o><v n=\"Use\">true</v><v "
+    "n=\"Declare\">true</v></o></d2></o></Data></XmlArchive></ObjectProperties>";
+
 /// The text behind the unit's own variables, and what compiling it says.
 Read read(const std::string& xml) {
     const test::Folder folder;
@@ -146,21 +154,32 @@ TEST_CASE("what steps call, named transitions, flags and what is left out of the
         return "<" + kind + " Name=\"" + name + "\"><Implementation><ST><![CDATA[" + text +
                "]]></ST></Implementation></" + kind + ">";
     };
-    const std::string flags =
-        "<ObjectProperties><XmlArchive><Data><o t=\"SFCProperty\"><d2 n=\"Flags\"><v>Init</v><o><v "
-        "n=\"Use\">true</v><v n=\"Declare\">true</v></o><v>Pause</v><o><v n=\"Use\">true</v><v "
-        "n=\"Declare\">true</v></o></d2></o></Data></XmlArchive></ObjectProperties>";
     const Read made = read(
         unit(step("Begin", action("a", "N") + action("b", "N", attribute(is_excluded_id, "TRUE")),
                   kept) +
                  transition("Ready") + jump("Begin"),
-             routine("Action", "Enter", "SFCInit := FALSE;") + routine("Action", "Work", ";") +
-                 routine("Action", "Leave", ";") + routine("Transition", "Ready", "c") + flags));
+             routine("Action", "Enter", "SFCInit := FALSE; sfctip := TRUE;") +
+                 routine("Action", "Work", ";") + routine("Action", "Leave", ";") +
+                 routine("Transition", "Ready", "c") + flags));
     CHECK(made.messages == "");
-    CHECK(made.text.find("VAR\n    SFCInit : BOOL;\nEND_VAR\n") != std::string::npos);
+    CHECK(made.text.find("VAR\n    SFCInit : BOOL;\n    SFCTip : BOOL;\nEND_VAR\n") !=
+          std::string::npos);
     CHECK(made.text.find("INITIAL_STEP Begin:\n    a(N);\n    Enter(_ENTRY);\n    Work(_ACTIVE);\n"
                          "    Leave(_EXIT);\nEND_STEP\n"
                          "TRANSITION FROM Begin TO Begin := Ready();\n") != std::string::npos);
+}
+
+TEST_CASE("a chart that an action is has its flags in the block") {
+    std::string text = unit(first("Begin") + transition("a") + jump("Begin"), flags);
+    text.insert(text.find("</POU>"),
+                "</Action><Action Name=\"Go\"><Implementation><ST><![CDATA[SFCTip := "
+                "TRUE;]]></ST></Implementation></Action>");
+    text.insert(text.find("<Implementation>"),
+                "<Implementation><ST><![CDATA[Run(); Go();]]></ST></Implementation><Action "
+                "Name=\"Run\">");
+    const Read made = read(text);
+    CHECK(made.messages == "");
+    CHECK(made.text.find("VAR\n    SFCTip : BOOL;\nEND_VAR\n") != std::string::npos);
 }
 
 TEST_CASE("what of a chart of steps is not read is told at its place") {
