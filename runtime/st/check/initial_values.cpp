@@ -123,8 +123,54 @@ Expression* repeated_by_constant(Checking& c, const Expression& call) {
     return made;
 }
 
+Expression* as_elements(Checking& c, Expression* value) {
+    Expression* list = make(c, E::list, *value);
+    list->token.word = Word::open_bracket;
+    list->arguments.push_back({.value = value});
+    return list;
+}
+
+/// What stands in a list one by one; empty where that is not known, or too much.
+std::vector<Argument> one_by_one(Checking& c, const Expression& list) {
+    std::vector<Argument> values;
+    for (const Argument& argument : list.arguments) {
+        if (argument.value->kind != E::repeated) {
+            values.push_back(argument);
+            continue;
+        }
+        Expression* count = argument.value->operands[0];
+        const auto times = check_whole(c, count, lint_type);
+        const auto parts = static_cast<Wide>(argument.value->arguments.size());
+        if (!times || *times < 0 || *times * parts > most_elements) return {};
+        for (Wide i = 0; i < *times; ++i)
+            for (const Argument& part : argument.value->arguments)
+                values.push_back({.value = make_copy(c, *part.value)});
+    }
+    return values;
+}
+
+/// CoDeSys 2.3 has the values of an array of arrays one behind the other: here as lists.
+void group_elements(Checking& c, Expression& list, const Type& array) {
+    const Type& inner = array.innermost();
+    const Wide room = Elements{array, true}.count();
+    if (inner.kind != Kind::array || list.is_nested() || !list.place.dialect().is_loose) return;
+    std::vector<Argument> values = one_by_one(c, list);
+    if (static_cast<Wide>(values.size()) <= room) return;
+    Wide parts = 1;
+    for (const Type* t = &inner; t->kind == Kind::array; t = &t->innermost())
+        parts *= Elements{*t, true}.count();
+    list.arguments.clear();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (static_cast<Wide>(i) % parts == 0)
+            list.arguments.push_back({.value = as_elements(c, values[i].value)});
+        else
+            list.arguments.back().value->arguments.push_back(values[i]);
+    }
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
+    group_elements(c, list, array);
     const Elements elements{array, !list.is_nested()};
     const Wide room = elements.count();
     Wide count = 0;
@@ -217,13 +263,6 @@ bool is_first_element(const Expression& value, const Type& type) {
     if (type.kind != Kind::array || !value.place.dialect().is_loose) return false;
     const Expression& sign = value.kind == E::unary ? *value.operands[0] : value;
     return value.kind == E::list ? value.is_structure() : sign.kind == E::constant;
-}
-
-Expression* as_elements(Checking& c, Expression* value) {
-    Expression* list = make(c, E::list, *value);
-    list->token.word = Word::open_bracket;
-    list->arguments.push_back({.value = value});
-    return list;
 }
 
 }  // namespace
