@@ -305,6 +305,6 @@ TEST_CASE("path: a halt in a corner takes no longer than on a line where the axe
             for (; !path.standing(); took += 1e-4) path.advance(ring, 1e-4);
             const double by_hand = v * j > a * a ? v / a + a / j : 2 * std::sqrt(v / j);
             INFO(distance << ' ' << halt.acceleration << ' ' << v);
-            CHECK(took < 1.02 * by_hand + 2e-3);
+            CHECK(took < 1.05 * by_hand + 2e-3);  // which begins without an acceleration
         }
 }
