@@ -51,7 +51,7 @@ Value value_of(const Field& field, const std::string& cell) {
     const auto quantity = std::get<Quantity>(parse_quantity(cell));
     if (field.type == Type::real) return quantity.number;
     REQUIRE(quantity.is_integer);
-    return quantity.integer;
+    return *whole_value(quantity.integer, Type::integer);
 }
 
 /// A block that a table drives.

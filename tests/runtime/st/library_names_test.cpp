@@ -131,7 +131,7 @@ std::string taken_for(const std::string& text) {
     Diagnostics out;
     st::Tree tree;
     st::Tokens tokens = st::read_tokens(file("a.st", text), out);
-    st::LibraryNames names(standard_blocks());
+    st::LibraryNames names(standard_blocks(), {});
     names.note_libraries(tokens);
     st::parse(std::move(tokens), tree, out);
     names.add_files(tree, out);
