@@ -88,6 +88,13 @@ std::optional<Seen> see_bytes(Checking& c, Expression* given, bool is_written) {
     return seen;
 }
 
+/// Else it is told what it has not.
+bool has_all(const Routine& called, const std::vector<Argument>& arguments) {
+    return std::ranges::all_of(arguments, [&](const Argument& one) {
+        return !one.is_named() || find_in(called.names, one.name.text);
+    });
+}
+
 bool can_be_bytes(const Type& type) {
     return !type.is_open && type.kind != Kind::text && packed_bits(type, scl) > 0;
 }
@@ -119,7 +126,10 @@ Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlock
 
 bool take_as_variant(Checking& c, Expression*& e, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
-    if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude()) return false;
+    const bool is_siemens = e->place.dialect().vendor == Vendor::siemens;
+    if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude() || !is_siemens)
+        return false;
+    if (!has_all(called, e->arguments)) return false;
     Argument* given = find_called(e->arguments, blocks->variable(), &Argument::name);
     if (!given || is_hidden(*given->value)) return false;
     const Type* type = check(c, given->value);
@@ -136,12 +146,13 @@ void write_serializations(Checking& c) {
         };
         const auto call = std::ranges::find_if(c.serializations, is_of);
         if (call == c.serializations.end()) continue;
-        c.routine = (*call)->routine;
+        const Expression& like = **call;
+        c.routine = like.routine;
         for (std::size_t i = 0; i < c.types_of_variants.size(); ++i) {
             const Type& type = *c.types_of_variants[i];
             if (!can_be_bytes(type)) continue;
             const auto number = static_cast<std::int64_t>(i) + 1;
-            c.routine->body.push_back(bytes_of_variant(c, **call, blocks, type, number));
+            c.routine->body.push_back(bytes_of_variant(c, like, blocks, type, number));
             check(c, c.routine->body.back());
         }
     }
@@ -150,11 +161,13 @@ void write_serializations(Checking& c) {
 
 bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
+    const bool is_siemens = call.place.dialect().vendor == Vendor::siemens;
     if (!blocks || call.place.source->is_prelude()) return true;
+    if (is_siemens && !has_all(called, call.arguments)) return true;
     for (const std::string_view name : {blocks->read, blocks->written}) {
         const Argument* given = find_called(call.arguments, name, &Argument::name);
         if (name.empty() || (given && is_hidden(*given->value))) continue;
-        if (!given && call.place.dialect().vendor != Vendor::siemens) {
+        if (!given && !is_siemens) {
             c.fail(code::not_declared, call.operands[0]->place,
                    fmt::format("'{}' is not declared", call.operands[0]->token.text),
                    fmt::format("add the source that declares it; SCL's is {}(..., {} := ...)",

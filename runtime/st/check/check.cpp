@@ -53,7 +53,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     check_initial_values(c);
     for (Routine& routine : c.checked.routines) check_body(c, routine);
     write_deletions(c);
-    write_serializations(c);
+    if (out.empty()) write_serializations(c);
     tell_missing_libraries(c);
     finish_image(c);
     order_routines(c);

@@ -264,7 +264,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     if (operand.type->kind == Kind::text) {
         const Slot text = text_address(w, operand);
         const Vendor vendor = e.place.dialect().vendor;
-        const Slot groups = vendor == Vendor::codesys || vendor == Vendor::none ? 1 : 0;
+        const bool is_codesys = vendor == Vendor::codesys;
+        const Slot groups = is_codesys || vendor == Vendor::none ? 1 : 0;
         const bool is_s7 = is_of_s7(e);
         if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
         if (e.type->kind == Kind::real) {
@@ -272,7 +273,8 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
                                     : w.emit(Op::real_of_text, none, text, groups);
             return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
         }
-        if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, groups);
+        if (e.type->kind == Kind::boolean)
+            return w.emit(Op::truth_of_text, wanted, text, is_codesys);
         if (e.type->is_time()) {
             const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
             return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
