@@ -194,7 +194,7 @@ class Session final : Observer, EventSink {
     std::vector<HandChange> wanted_changes_;  ///< of the instant under way
     std::unique_ptr<st::Probe> looking_;      ///< null without Structured Text
     std::vector<bool> has_code_;              ///< by task
-    std::vector<std::byte> fresh_;            ///< the memory as the run began
+    BlockMemory fresh_;                       ///< the memory as the run began
     std::vector<Force> fresh_forces_;
     History history_;
     std::int64_t kept_ = 0,

@@ -37,7 +37,7 @@ class KeptMemory {
 
     Machine& machine_;
     std::int64_t now_;
-    std::vector<std::byte> fresh_;       ///< the memory as it was
+    BlockMemory fresh_;                  ///< the memory as it was
     std::vector<std::byte*> published_;  ///< of each block, where others see it
     std::vector<std::int64_t> links_;    ///< sorted
 };

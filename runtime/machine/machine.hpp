@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/machine/block_memory.hpp"
 #include "runtime/machine/replay.hpp"
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/value.hpp"
@@ -198,7 +199,7 @@ struct ReplayedFile {
 
 /// A checked and wired program in memory. Owns the blocks; movable, not copyable.
 struct Machine {
-    std::vector<std::byte> memory;  ///< all blocks and inputs; zeroed, then constructed
+    BlockMemory memory;       ///< all blocks and inputs; zeroed, then constructed
     std::vector<Task> tasks;  ///< in scan order of equal instants: priority, then place in the file
     std::vector<BlockPlace> blocks;             ///< in the order of the file
     std::vector<std::byte*> instances;          ///< their live memory, for references

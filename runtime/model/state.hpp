@@ -22,8 +22,8 @@ class StateWriter {
     void put(const T& value) {
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
     }
-    template <Plain T>
-    void put(const std::vector<T>& values) {
+    template <Plain T, class Allocator>
+    void put(const std::vector<T, Allocator>& values) {
         put(std::uint64_t{values.size()});
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     }
@@ -65,8 +65,8 @@ class StateReader {
         if (ok_) value = read;
     }
     /// `values` has the size that was written, or it is not the same machine.
-    template <Plain T>
-    void get(std::vector<T>& values) {
+    template <Plain T, class Allocator>
+    void get(std::vector<T, Allocator>& values) {
         std::uint64_t size = 0;
         get(size);
         ok_ = ok_ && size == values.size();

@@ -44,7 +44,7 @@ void by_hand(benchmark::State& state) {
 void executive(benchmark::State& state, bool traced) {
     Loaded loaded = load_circle();
     Machine& machine = loaded.linked.machine;
-    const std::vector<std::byte> start = machine.memory;
+    const BlockMemory start = machine.memory;
     MemoryTrace memory(loaded.linked.traces.front());
     RunResult result;
     Quickest quickest;
@@ -74,7 +74,7 @@ void executive(benchmark::State& state, bool traced) {
 /// A whole run with its trace in a file, as `lineshaft run --trace` makes it.
 void traced_to_file(benchmark::State& state) {
     Loaded loaded = load_circle();
-    const std::vector<std::byte> start = loaded.linked.machine.memory;
+    const BlockMemory start = loaded.linked.machine.memory;
     RunReport report;
     Quickest quickest;
     for (auto _ : state) {

@@ -116,7 +116,7 @@ void write_moving_axes(const std::filesystem::path& folder, std::size_t axes,
 
 /// Time of a task's scan, from the first on.
 void run(benchmark::State& state, Machine& machine) {
-    const std::vector<std::byte> start = machine.memory;
+    const BlockMemory start = machine.memory;
     Quickest quickest;
     RunResult result;
     for (auto _ : state) {
