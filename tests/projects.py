@@ -1694,11 +1694,11 @@ def check_encrypted():
 
 def check_foreign_names():
     """A source with names of libraries that are not here is none without a mistake."""
-    twincat("foreign", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
-    twincat("foreign", "POU", "B", "FUNCTION_BLOCK B\nVAR x : INT; END_VAR", "x := 1;")
-    plcproj("foreign/P.plcproj", "P", ["A.TcPOU", "B.TcPOU"], [("Tc9_Strange", "Tc9_Strange")])
-    page = run("check", "foreign", code=2)
-    assert "foreign: 1 of 2 POUs, types and lists have no mistake" in page and "FB_Strange (foreign/A.TcPOU:3)" in page, page
+    twincat("strange", "POU", "A", "FUNCTION_BLOCK A\nVAR x : FB_Strange; END_VAR", "x();")
+    twincat("strange", "POU", "B", "FUNCTION_BLOCK B\nVAR x : INT; END_VAR", "x := 1;")
+    plcproj("strange/P.plcproj", "P", ["A.TcPOU", "B.TcPOU"], [("Tc9_Strange", "Tc9_Strange")])
+    page = run("check", "strange", code=2)
+    assert "strange: 1 of 2 POUs, types and lists have no mistake" in page and "FB_Strange (strange/A.TcPOU:3)" in page, page
 
 
 def check_hostile():
