@@ -23,7 +23,7 @@ std::byte* HugePages::allocate(std::size_t count) {
 }
 
 void HugePages::deallocate(std::byte* memory, std::size_t count) noexcept {
-    ::operator delete(memory, count, alignment_of(count));
+    ::operator delete(memory, alignment_of(count));
 }
 
 }  // namespace lineshaft
