@@ -31,8 +31,8 @@ namespace lineshaft::st {
 /// those alone that the project refers to, where there is one. A block that has nothing of what
 /// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's. Names of a library
 /// that is not open, and of helpers, which begin with a small letter, are not looked for, nor other
-/// names in SCL, nor what is the name of a variable of the sources, or of the library's file that is
-/// read. A library whose namespace the sources declare themselves is theirs.
+/// names in SCL, nor what is the name of a variable of the sources, or of the library's file that
+/// is read. A library whose namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
     /// `references` are those that a project has to libraries.
