@@ -136,8 +136,7 @@ inline constexpr std::string_view motion_error_texts[] = {
     "a reference of the block names nothing",
     "what the block refers to is in another unit than its axis",
     "the axis follows a group in motion, whose commands move it: MC_GroupStop or MC_GroupHalt "
-    "stops "
-    "it",
+    "stops it",
     "the command refers to no group",
     "the group is disabled, which MC_GroupEnable ends",
     "MC_GroupStop holds the group until its Execute is false",

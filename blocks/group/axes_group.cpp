@@ -65,7 +65,7 @@ void AxesGroup::run(const Context& context, double dt) {
     look_at_moves(context);
     if (!path.standing()) return;
     if (interrupter.exists()) {
-        const bool frees = interrupter.holds != 0;
+        const bool frees = interrupter.frees != 0;
         end(context, interrupter, Progress::done);
         if (frees) return leave_path(context);
     }

@@ -35,7 +35,8 @@ struct AxesGroup {
         std::int64_t place = nowhere;  ///< of its job, nowhere: none
         std::int64_t ticket = 0;
         GroupCommand command = GroupCommand::none;
-        std::int64_t holds = 0;     ///< Execute of MC_GroupStop, FreesGroup of MC_GroupInterrupt
+        std::int64_t holds = 0;     ///< Execute of MC_GroupStop
+        std::int64_t frees = 0;     ///< FreesGroup of MC_GroupInterrupt
         std::int64_t told_end = 0;  ///< it is done, and still holds the group
 
         bool exists() const { return place != nowhere; }

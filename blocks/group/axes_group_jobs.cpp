@@ -184,7 +184,7 @@ void AxesGroup::begin_interrupt(const Context& context, GroupJob& job) {
     path.halt(braking_of(job.request));
     interrupted = 1;
     if (queue.first != nowhere) tell(context.at<GroupJob>(queue.first), Progress::waiting);
-    interrupter = {context.place_of(job), job.ticket, job.request.command, job.request.holds};
+    interrupter = {context.place_of(job), job.ticket, job.request.command, 0, job.request.frees};
     tell(job, Progress::active);
 }
 
@@ -196,15 +196,20 @@ MotionError AxesGroup::go_on(const Context& context) {
     return MotionError::none;
 }
 
+/// Whether the moves of a queue are aside.
+static void mark(const Context& context, const JobList& queue, bool aside) {
+    for (std::int64_t place = queue.first; place != nowhere;) {
+        GroupJob& job = context.at<GroupJob>(place);
+        job.is_aside = aside ? 1 : 0;
+        place = job.next;
+    }
+}
+
 /// It stands: path and moves are put aside, and other moves may be made.
 void AxesGroup::leave_path(const Context& context) {
     forget_path_aside(context);
     aside = {1, queue, path, position, end_point};
-    for (std::int64_t place = queue.first; place != nowhere;) {
-        GroupJob& job = context.at<GroupJob>(place);
-        job.is_aside = 1;
-        place = job.next;
-    }
+    mark(context, queue, true);
     queue = {};
     ring_in_use = 1 - ring_in_use;
     path.clear();
@@ -229,11 +234,7 @@ MotionError AxesGroup::return_to_path(const Context& context) {
     queue = aside.queue;
     path = aside.path;
     end_point = aside.end_point;
-    for (std::int64_t place = queue.first; place != nowhere;) {
-        GroupJob& job = context.at<GroupJob>(place);
-        job.is_aside = 0;
-        place = job.next;
-    }
+    mark(context, queue, false);
     aside = {};
     ring_in_use = 1 - ring_in_use;
     path.set_override(factor);

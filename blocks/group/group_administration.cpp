@@ -51,7 +51,7 @@ std::span<const Field> GroupInterrupt::fields() {
 }
 
 void GroupInterrupt::scan(const Scan& now, const Context& context) {
-    pins.holds = frees_group ? 1 : 0;
+    pins.frees = frees_group ? 1 : 0;
     run(now, context);
 }
 

@@ -44,7 +44,8 @@ struct GroupRequest {
     PathVector target{};     ///< position or distance; of a transformation shift and angles [deg]
     PathVector auxiliary{};  ///< AuxPoint
     double velocity = -1, acceleration = -1, deceleration = -1, jerk = -1;
-    std::int64_t holds = 0;  ///< Execute of MC_GroupStop, Enable of MC_GroupPower, FreesGroup
+    std::int64_t holds = 0;                  ///< Execute of MC_GroupStop, Enable of MC_GroupPower
+    std::int64_t frees = 0;                  ///< FreesGroup of MC_GroupInterrupt
     std::int64_t axis = nowhere, place = 1;  ///< of MC_AddAxisToGroup; IdentInGroup
     std::int64_t table = nowhere;            ///< of MC_MovePath
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< override
