@@ -214,7 +214,8 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             is_open_array(variable) ||
             (variable.section == Section::input && !routine.has_instances() &&
              (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
-        if (!due || variable.bound_of || std::ranges::find(given, &variable) != given.end())
+        if (!due || call.action || variable.bound_of ||
+            std::ranges::find(given, &variable) != given.end())
             continue;
         const bool may_miss = c.is_in_test() && routine.has_instances();
         if (may_miss && variable.type) left_out.push_back(leave_out(c, call, variable));
@@ -304,12 +305,20 @@ void note_call(Checking& c, const Expression& call, Routine& called) {
     }
 }
 
+/// The instance is given its arguments as by a call of itself.
+void check_call_of_action(Checking& c, Expression*& e, Routine& block) {
+    e->routine = &block;
+    check_arguments(c, e, block);
+    check_call(c, e->action, true, nullptr);
+}
+
 const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, bool as_statement) {
     if (!as_statement)
         return c.fail(code::type_does_not_fit, e->place, "the call of an instance has no value",
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
         const Expression& instance = *e->operands[0];
+        if (e->action) return check_call_of_action(c, e, *type.routine), nullptr;
         if (type.routine->pou->is_class)
             return c.fail(code::wrong_place, e->place,
                           fmt::format("{} is a CLASS, and has no body", type.name),

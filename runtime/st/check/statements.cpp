@@ -102,6 +102,12 @@ bool is_of_variable(Checking& c, const Expression& e) {
     return find_variable(c, e.token) || is_own_instance(c, e);
 }
 
+bool is_in_out(const Routine& block, const Token& name) {
+    return std::ranges::any_of(all_variables(block), [&](const Variable* variable) {
+        return variable->section == Section::in_out && same_name(variable->text, name.text);
+    });
+}
+
 /// `motor.Turn(speed := 5, done => stands);` of an ACTION gives the block's inputs, runs it, and
 /// takes the block's outputs.
 bool runs_with_pins(Checking& c, Statement*& s) {
@@ -113,21 +119,34 @@ bool runs_with_pins(Checking& c, Statement*& s) {
     Expression* callee = call.operands[0];
     if (callee->kind == E::member && !is_of_variable(c, *callee->operands[0])) return false;
     if (!find_action(c, *callee)) return false;
+    const bool is_of_member = callee->kind == E::member;
+    Expression* instance = is_of_member ? callee->operands[0] : make_name(c, *callee, "this");
+    const Type* type = is_of_member ? check(c, instance) : nullptr;
+    const Routine* block = is_of_member ? type->routine : own_block(c);
+    std::vector<Argument> referred;
     Block made, taken;
     for (const Argument& argument : call.arguments) {
-        Expression like;
-        like.token = argument.name;
-        like.place = argument.name.place;
-        Expression* pin = callee->kind == E::member
-                              ? make_member(c, callee->operands[0], argument.name.text)
-                              : make_name(c, like, argument.name.text);
+        if (block && !argument.is_output && is_in_out(*block, argument.name)) {
+            referred.push_back(argument);
+            continue;
+        }
+        Expression* pin = is_of_member
+                              ? make_member(c, instance, argument.name.text)
+                              : make_name(c, {.token = argument.name, .place = argument.name.place},
+                                          argument.name.text);
         const Place place = argument.value->place;
         if (argument.is_output)
             taken.push_back(make_assignment(c, place, argument.value, pin));
         else
             made.push_back(make_assignment(c, place, pin, argument.value));
     }
-    made.push_back(make_call_statement(c, make_with(c, call, {})));
+    Expression* run = make_with(c, call, {});
+    if (!referred.empty()) {
+        Expression* action = run;
+        run = make_call(c, call, instance, std::move(referred));
+        run->action = action;
+    }
+    made.push_back(make_call_statement(c, run));
     std::ranges::move(taken, std::back_inserter(made));
     s = make_sequence(c, s->place, std::move(made));
     check(c, s);

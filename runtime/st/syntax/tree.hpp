@@ -91,6 +91,7 @@ struct Expression {
     const StandardFunction* standard = nullptr;  ///< that a call calls
     const BlockType* called_as = nullptr;  ///< a call: of an IEC_TIMER, which is any of the timers
     Expression* initial = nullptr;         ///< what it is to all of `a, b : INT := 2 + 3`
+    Expression* action = nullptr;  ///< a call: of an instance's ACTION, run instead of its body
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 
