@@ -73,6 +73,7 @@ void declare_result(Checking& c, Routine& routine) {
     result.section = Section::result;
     routine.result = &result;
     routine.names.emplace(result.text, &result);
+    if (!routine.is_prototype()) depend(c, result.type, text->place);
 }
 
 /// `go : BOOL R_EDGE` has an instance beside it, which nobody can name.
