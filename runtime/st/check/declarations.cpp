@@ -69,11 +69,15 @@ void declare_result(Checking& c, Routine& routine) {
         return void(c.fail(code::wrong_place, text->place,
                            "only functions and methods have a result", "declare a VAR_OUTPUT"));
     const Token& name = routine.pou->name;
-    Variable& result = c.make_variable(routine, name, name.text, resolve(c, *text));
+    const Type* type = resolve(c, *text);
+    Variable& result = c.make_variable(routine, name, name.text, type);
     result.section = Section::result;
     routine.result = &result;
     routine.names.emplace(result.text, &result);
-    if (!routine.is_prototype()) depend(c, result.type, text->place);
+    if (is_its_own_block(routine, type))
+        give_own_instance(c, routine, result);
+    else if (!routine.is_prototype())
+        depend(c, type, text->place);
 }
 
 /// `go : BOOL R_EDGE` has an instance beside it, which nobody can name.
@@ -121,32 +125,6 @@ const Type& longer_string(Checking& c, bool is_wide) {
     type.length = 255;
     type.is_wide = is_wide;
     return type;
-}
-
-/// A variable of a method that is another instance of its block, which cannot be in one: it stands
-/// beside all blocks.
-bool is_instance_of_own(const Routine& routine, Section section, const Type* type) {
-    const bool is_local = section == Section::local || section == Section::temp;
-    return is_local && routine.owner && !routine.is_test() && type && type == routine.owner->type;
-}
-
-/// Each call makes it what an instance is that nothing was done with.
-void begin_anew(Checking& c, Routine& routine, Variable& variable) {
-    Variable& fresh = c.make_variable(
-        variable.name, c.checked.names.emplace_back(fmt::format("{} as it begins", variable.text)),
-        variable.type);
-    fresh.initial = variable.initial;
-    fresh.constructed = variable.constructed;
-    fresh.used = true;
-    keep_once(c, fresh);
-    const Expression like{.token = variable.name, .place = variable.name.place};
-    const auto use_of = [&](Variable& used) {
-        Expression* use = make_use(c, like, used);
-        use->type = used.type;
-        return use;
-    };
-    routine.call_begins.push_back(make_assignment(c, like.place, use_of(variable), use_of(fresh)));
-    routine.holds_instance = true;
 }
 
 /// On an S7 what is elementary is given to a call by value.
@@ -227,7 +205,9 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (is_value && is_unsized) type = &longer_string(c, is_wide);
         if (section == Section::in_out && is_unsized)
             type = is_wide ? &open_wide_string_type : &open_string_type;
-        const bool is_another = is_instance_of_own(routine, section, type);
+        const bool is_of_own = is_its_own_block(routine, type);
+        const bool is_another =
+            is_of_own && (section == Section::local || section == Section::temp);
         const bool is_static = section == Section::static_ || is_another;
         Variable* variable =
             add(c, is_static ? c.checked.variables : routine.variables, *declared, type);
@@ -239,6 +219,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (section == Section::in_out && !is_copied(routine, type))
             variable->space = Space::reference;
         const auto [it, added] = routine.names.emplace(variable->text, variable);
+        if (added && is_of_own && section == Section::input)
+            it->second = &take_own_instance(c, routine, *variable);
         const bool is_of_base = !added && it->second->of != routine.pou;
         const bool is_result = !added && it->second->section == Section::result;
         if (is_of_base && it->second->access == Access::private_)

@@ -28,6 +28,18 @@ void refuse_object(Checking& c, const Declaration& declared, const Type* type);
 /// Variables, results and constants of all routines, and which they are made of.
 void declare_routines(Checking& c);
 
+// own_instances.cpp
+
+/// Of what a method declares: an instance of its own block, for which an instance has no room. It
+/// stands beside all blocks, so the method does not run within itself (Fault::runs_already).
+bool is_its_own_block(const Routine& routine, const Type* type);
+/// Such a variable becomes in each call what an instance is that nothing was done with.
+void begin_anew(Checking& c, Routine& routine, Variable& variable);
+/// Such an input refers to what it is given. Gives the copy that its name means in the method.
+Variable& take_own_instance(Checking& c, Routine& routine, Variable& input);
+/// Such a result refers to what the method has made.
+void give_own_instance(Checking& c, Routine& routine, Variable& result);
+
 // globals.cpp
 
 /// VAR_GLOBAL and data blocks.

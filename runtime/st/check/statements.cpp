@@ -465,7 +465,8 @@ static bool is_same_object(const Expression& target, const Expression& value) {
 /// An instance takes another one of its block; of one that derives from it what the block has.
 static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
     const Type& type = *given->type;
-    if (same_type(block, type)) return is_place(*given) || given->kind == E::call;
+    if (same_type(block, type))
+        return is_place(*given) || given->kind == E::call || given->kind == E::self;
     const bool derives = type.kind == Kind::block && is_a(*type.routine, *block.routine);
     return derives && become_base(c, given, block);
 }
