@@ -110,7 +110,8 @@ void open_siemens(Checking& c) {
 void collect_namespaces(Checking& c) {
     for (const auto& source : c.tree.sources) {  // CODESYS' language has none: those of libraries
         const auto scopes = c.tree.scopes.find(source.get());
-        const bool is_project = source->dialect.is_loose && scopes != c.tree.scopes.end();
+        const bool is_project =
+            source->dialect.is_loose && !source->is_library() && scopes != c.tree.scopes.end();
         if (!is_project || scopes->second.front().path.empty()) continue;
         const std::string_view library = scopes->second.front().path;
         if (std::ranges::find(c.open_libraries, library) == c.open_libraries.end())
