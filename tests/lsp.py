@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-from language_client import Client, framed, uri_of
+from language_client import Client, framed, path_of, uri_of
 
 lineshaft, source = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
 edits = int(sys.argv[3]) if len(sys.argv) > 3 else 60
@@ -381,6 +381,108 @@ def a_method_is_renamed_with_its_family():
     for nth in range(3):
         [edits] = on.ask("rename", path, "Turn : INT", nth=nth, newName="Rotate")["changes"].values()
         assert sorted({e["range"]["start"]["line"] for e in edits}) == [1, 5, 6, 10, 11, 17], edits
+    on.end()
+
+
+THINGS = {
+    "IThing.st": "INTERFACE IThing\nMETHOD Act : INT\nVAR_INPUT k : INT; END_VAR\nEND_METHOD\nEND_INTERFACE\n",
+    "Thing.st": "FUNCTION_BLOCK Thing IMPLEMENTS IThing\nMETHOD PUBLIC Act : INT\nVAR_INPUT k : INT; END_VAR\nAct := k;\nEND_METHOD\nEND_FUNCTION_BLOCK\n",
+    "Better.st": "FUNCTION_BLOCK Better EXTENDS Thing\nMETHOD PUBLIC OVERRIDE Act : INT\nVAR_INPUT k : INT; END_VAR\nAct := 2 * k;\nEND_METHOD\nEND_FUNCTION_BLOCK\n",
+    "Plain.st": "FUNCTION_BLOCK Plain\nMETHOD PUBLIC Act : INT\nVAR_INPUT k : INT; END_VAR\nAct := 3 * k;\nEND_METHOD\nEND_FUNCTION_BLOCK\n",
+    "Joins.st": "(* has the name of neither method *)\nFUNCTION_BLOCK Joins EXTENDS Plain IMPLEMENTS IThing\nEND_FUNCTION_BLOCK\n",
+    "Apart.st": "FUNCTION_BLOCK Apart\nMETHOD PUBLIC Act : INT\nVAR_INPUT k : INT; END_VAR\nAct := k;\nEND_METHOD\nEND_FUNCTION_BLOCK\n",
+    "Main.st": "PROGRAM Main\nVAR t : Thing; i : IThing; n : INT; END_VAR\nVAR_EXTERNAL gCount : INT; END_VAR\ni := t;\nn := i.Act(k := gCount);\nEND_PROGRAM\n",
+    "Globals.st": "VAR_GLOBAL\ngCount : INT := 7;\nEND_VAR\n",
+    "test_thing.st": "TEST 'all'\nVAR m : Main; j : Joins; b : Better; a : Apart; END_VAR\nm();\nASSERT_EQUAL(7, m.n);\n"
+                     "ASSERT_EQUAL(6, j.Act(k := 2));\nASSERT_EQUAL(4, b.Act(k := 2));\nASSERT_EQUAL(2, a.Act(k := 2));\nEND_TEST\n",
+}
+
+
+class Opened:
+    """Files of a folder, each of which is open alone while it is asked about."""
+
+    def __init__(self, files):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name).resolve()
+        for name, text in files.items():
+            (self.folder / name).write_text(text, encoding="utf-8")
+        self.client = Client(lineshaft, self.folder)
+
+    def answer(self, method, name, text, **params):
+        path = self.folder / name
+        self.client.open(path)
+        whole = self.client.texts[str(path)]
+        at = whole.index(text)
+        answer = self.client.answer(f"textDocument/{method}", {"textDocument": {"uri": uri_of(path)}, **params, "position": {
+            "line": whole.count("\n", 0, at), "character": at - whole.rfind("\n", 0, at) - 1}})
+        self.client.close(path)
+        return answer
+
+    def changes(self, name, text, new):
+        answer = self.answer("rename", name, text, newName=new)
+        assert "error" not in answer, (name, text, answer)
+        return answer["result"]["changes"]
+
+    def rename(self, name, text, new):
+        """What the folder's files are then, by their names."""
+        made = {path.name: path.read_text(encoding="utf-8") for path in self.folder.iterdir()}
+        for uri, found in self.changes(name, text, new).items():
+            file = pathlib.Path(path_of(uri)).name
+            lines = made[file].split("\n")
+            for edit in sorted(found, key=lambda e: (e["range"]["start"]["line"], e["range"]["start"]["character"]), reverse=True):
+                at, end = edit["range"]["start"], edit["range"]["end"]
+                lines[at["line"]] = lines[at["line"]][:at["character"]] + edit["newText"] + lines[at["line"]][end["character"]:]
+            made[file] = "\n".join(lines)
+        return made
+
+    def end(self):
+        assert self.client.end() == 0
+        self.temporary.cleanup()
+
+
+@check
+def a_hierarchy_is_renamed_in_all_files_from_wherever_one_stands():
+    on = Opened(THINGS)
+    for new, places in (("Perform", [("IThing.st", "Act"), ("Thing.st", "Act"), ("Better.st", "Act"), ("Plain.st", "Act"), ("Main.st", "Act"), ("test_thing.st", "Act")]),
+                        ("much", [("IThing.st", "k :"), ("Thing.st", "k :"), ("Better.st", "k;"), ("Plain.st", "k;"), ("Main.st", "k :=")]),
+                        ("IActs", [("IThing.st", "IThing"), ("Thing.st", "IThing"), ("Joins.st", "IThing"), ("Main.st", "IThing")]),
+                        ("Base", [("Thing.st", "Thing"), ("Better.st", "Thing"), ("Main.st", "Thing;")]),
+                        ("gAll", [("Globals.st", "gCount"), ("Main.st", "gCount :"), ("Main.st", "gCount)")])):
+        old = re.match(r"\w+", places[0][1])[0]
+        wanted = {name: re.sub(rf"\b{old}\b", new, text) for name, text in THINGS.items()}
+        if old in ("Act", "k"):  # what is apart keeps its name
+            wanted["Apart.st"] = THINGS["Apart.st"]
+            wanted["test_thing.st"] = wanted["test_thing.st"].replace("a.Perform(", "a.Act(").replace("a.Act(much", "a.Act(k")
+        for name, text in places:
+            found = on.rename(name, text, new)
+            assert found == wanted, (name, text, {n: t for n, t in found.items() if t != wanted[n]})
+            count = sum(len(re.findall(rf"\b{new}\b", t)) for t in wanted.values())
+            assert len(on.answer("references", name, text, context={"includeDeclaration": True})["result"]) == count, (name, text)
+    for name, text in wanted.items():
+        (on.folder / name).write_text(text, encoding="utf-8")
+    subprocess.run([lineshaft, "test", on.folder], check=True, capture_output=True)
+    refused = on.answer("rename", "Globals.st", "gAll", newName="k")
+    assert "there is a 'k'" in refused["error"]["message"], refused
+    on.end()
+
+
+@check
+def a_tag_is_renamed_in_its_table():
+    table = ('<?xml version="1.0" encoding="utf-8"?>\n<Document>\n<Engineering version="V17" />\n<SW.Tags.PlcTagTable ID="0">\n<AttributeList><Name>T</Name></AttributeList>\n'
+             '<ObjectList>\n<SW.Tags.PlcTag ID="1" CompositionName="Tags">\n<AttributeList><DataTypeName>Bool</DataTypeName><LogicalAddress>%I0.7</LogicalAddress>\n'
+             "<Name>Start</Name></AttributeList>\n</SW.Tags.PlcTag>\n</ObjectList>\n</SW.Tags.PlcTagTable>\n</Document>\n")
+    files = {"Tags.xml": table, "job.scl": 'FUNCTION_BLOCK "Job"\nVAR_OUTPUT q : Bool; END_VAR\nBEGIN\n  #q := "Start";\nEND_FUNCTION_BLOCK\n'}
+    on = Opened(files)
+    found = on.rename("job.scl", "Start", "Go")
+    assert found == {name: text.replace("Start", "Go") for name, text in files.items()}, found
+    found = on.answer("definition", "job.scl", "Start")["result"]["range"]
+    assert found == {"start": {"line": 8, "character": 6}, "end": {"line": 8, "character": 11}}, found
+    found = on.rename("job.scl", "q :=", "lamp")
+    assert found["job.scl"] == files["job.scl"].replace("q", "lamp"), found
+    (on.folder / "Tags.xml").write_text(table.replace("Start", "St&#97;rt"), encoding="utf-8")
+    on.client.tell("workspace/didChangeWatchedFiles", {"changes": []})
+    refused = on.answer("rename", "job.scl", "Start", newName="Go")
+    assert "Tags.xml:9; rename it there" in refused["error"]["message"], refused
     on.end()
 
 

@@ -70,6 +70,7 @@ void add_base(Checking& c, Routine& routine, const Token& name, bool wants_inter
         routine.has_unknown_base = true;
         return;
     }
+    c.note(name.place, *base);
     if (const std::string way = hops(*base, routine); !way.empty())
         return void(
             c.fail(code::contains_itself, name.place,

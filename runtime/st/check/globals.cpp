@@ -95,15 +95,15 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     return variable;
 }
 
-/// What a VAR_EXTERNAL says of a variable that no VAR_GLOBAL here declares, as those of a
-/// controller's modules, which other tools make.
+/// A VAR_EXTERNAL means the VAR_GLOBAL of its name; where none is here it declares one, as those of
+/// a controller's modules, which other tools make.
 void declare_externals(Checking& c) {
     for (const DeclarationBlock& block : c.tree.globals)
         for (const Declaration* declared : block.declarations) {
             const Token& name = declared->name;
-            if (block.section != Section::external || c.globals.contains(name.text) ||
-                c.users.places.contains(name.text))
-                continue;
+            if (block.section != Section::external) continue;
+            if (const Variable* global = find_in(c.globals, name.text)) c.note(name.place, *global);
+            if (c.globals.contains(name.text) || c.users.places.contains(name.text)) continue;
             const Type* type = resolve(c, *declared->type);
             if (!type || type->kind == Kind::handle) continue;
             c.warn(code::not_declared, name.place,

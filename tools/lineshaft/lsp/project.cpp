@@ -9,6 +9,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/lsp/yaml_places.hpp"
 #include "tools/lineshaft/test_files.hpp"
 
 namespace lineshaft::lsp {
@@ -30,6 +31,14 @@ std::string normal(const std::string& path) {
 bool is_ours(const SourceFile& file) {
     return file.text.find("lineshaft:") != file.text.npos ||
            file.text.find("lineshaft_") != file.text.npos;
+}
+
+/// As a whole name; letters small.
+bool has_word(std::string_view text, std::string_view word) {
+    const auto is_part = [&](std::size_t at) { return at < text.size() && is_of_name(text[at]); };
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1))
+        if (!(at > 0 && is_part(at - 1)) && !is_part(at + word.size())) return true;
+    return false;
 }
 
 }  // namespace
@@ -107,7 +116,7 @@ std::vector<std::string> Project::roots_to_look_in(const std::string& path,
     for (const std::string& source : sources_) {
         Diagnostics untold;
         const auto file = read_source(source, untold);
-        if (!file || lower(file->text).find(small) == std::string::npos) continue;
+        if (!file || !has_word(lower(file->text), small)) continue;
         for (const std::string& root : roots_of(source)) found.push_back(root);
     }
     std::ranges::sort(found);
