@@ -349,6 +349,26 @@ def check_unread_bodies():
     write("unread/p_test.st", "SETUP\nVAR p : P; END_VAR\nEND_SETUP\nTEST 'does nothing'\np();\nASSERT_EQ(1, 1);\nEND_TEST\n")
     told = run("test", "unread", code=1)
     assert "the body of 'P' is drawn (LISP), which is not read" in told, told
+    write("unread_rung/A.s7dcl", 'FUNCTION_BLOCK "A"\nVAR_INPUT a : Bool; END_VAR\nVAR_OUTPUT y : Bool; END_VAR\n{ S7_Language := "LAD" }\n'
+          "NETWORK\nRUNG wire#powerrail\nContact( #a )\nNContact( #a )\nCoil( #y )\nEND_RUNG\nEND_NETWORK\nEND_FUNCTION_BLOCK\n")
+    write("unread_rung/a_test.scl", "TEST 'lit'\nVAR f : \"A\"; END_VAR\nf(a := TRUE); ASSERT_TRUE(f.y);\nEND_TEST\n")
+    told = run("test", "unread_rung", code=1)
+    assert "A.s7dcl:8:1: error[L0903]: the instruction NContact is not supported" in told, told
+    write("unread_list/list.EXP", "FUNCTION_BLOCK A\nVAR_OUTPUT y : BOOL; END_VAR\nLD TRUE\nST y\nJMPC nowhere\nEND_FUNCTION_BLOCK\n")
+    write("unread_list/a_test.st", "TEST 'lit'\nVAR f : A; END_VAR\nf(); ASSERT_TRUE(f.y);\nEND_TEST\n")
+    told = run("test", "unread_list", code=1)
+    assert "list.EXP:5:1: error" in told, told
+    shutil.copytree(pathlib.Path(__file__).parent / "cases" / "openplc_editor_4", work / "unread_ladder")
+    ladder = work / "unread_ladder/pous/programs/main.ld"
+    ladder.write_text(ladder.read_text().replace('"variant": "set"', '"variant": "sett"'))
+    write("unread_ladder/main_test.st", "TEST 'runs'\nVAR p : main; END_VAR\np();\nASSERT_EQ(1, 1);\nEND_TEST\n")
+    told = run("test", "unread_ladder", code=1)
+    assert "'sett' is no kind of coil" in told, told
+    write("unread_file/One/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC"><Files>\n<File>Cyclic.st</File>\n<File>Actions.st</File>\n</Files></Program>\n')
+    write("unread_file/One/Cyclic.st", "PROGRAM _CYCLIC\nEND_PROGRAM\n")
+    write("unread_file/one_test.st", "TEST 'runs'\nVAR p : One; END_VAR\np();\nASSERT_EQ(1, 1);\nEND_TEST\n")
+    told = run("test", "unread_file", code=1)
+    assert "IEC.prg:4:1: error" in told and "Actions.st" in told, told
 
 
 CELL = """PROGRAM Main

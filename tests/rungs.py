@@ -64,7 +64,9 @@ class Block:
         return number
 
     def finish_net(self):
-        wires = "".join(f'<Wire UId="{1000 + i}">{begin}{"".join(ends)}</Wire>' for i, (begin, ends) in enumerate(self.lines.items()))
+        lines = list(self.lines.items())
+        self.draw.shuffle(lines)  # wires stand in any order
+        wires = "".join(f'<Wire UId="{1000 + i}">{begin}{"".join(ends)}</Wire>' for i, (begin, ends) in enumerate(lines))
         self.nets.append(f"<FlgNet><Parts>{''.join(self.parts)}</Parts><Wires>{wires}</Wires></FlgNet>")
         self.parts, self.lines, self.ids = [], {}, 0
 
@@ -111,7 +113,7 @@ class Block:
             name, bit = self.operand(), self.variable("Bool")
             edge = self.kept(f"#{name} AND NOT #{bit}" if kind[0] == "P" else f"NOT #{name} AND #{bit}")
             add(f"#{bit} := #{name};")
-            part = self.part(kind.replace("_", ""), power, operand=f"#{name}", bit=f"#{bit}")
+            part = self.part(kind.replace("_", ""), power, "pre", operand=f"#{name}", bit=f"#{bit}")
             return [f"{kind}(", f"  operand := #{name},", f"  bit := #{bit}", ")"], self.kept(f"{power} AND {edge}").at(part, "out")
         if kind == "P_Trig":
             bit = self.variable("Bool")

@@ -71,7 +71,7 @@ class IecProgram {
             text.write("IF NOT _has_started THEN _has_started := TRUE; _INIT(); END_IF\n", place);
         text.append(body_);
         text.write("END_PROGRAM\n", place);
-        to_.project.add(text.finish(list_.file()->path, name));
+        to_.project.add(text.finish(list_.file()->path, name, mistakes_));
     }
 
   private:
@@ -104,7 +104,7 @@ class IecProgram {
         if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named);
-            const auto path = to_.resolve(path_of(named), mark, to_.out);
+            const auto path = to_.resolve(path_of(named), mark, mistakes_);
             const bool is_local = list_.plain(file.attribute("Private")) == "true";
             if (!path) return;
             if (is_local && ending == ".typ")
@@ -115,8 +115,8 @@ class IecProgram {
                 read_sources(to_, *path, mark);
             return;
         }
-        const auto path = to_.resolve(path_of(named), mark, to_.out);
-        auto source = path ? read_source(*path, to_.out, mark) : nullptr;
+        const auto path = to_.resolve(path_of(named), mark, mistakes_);
+        auto source = path ? read_source(*path, mistakes_, mark) : nullptr;
         if (!source) return;
         const PlacedFile text(source);
         if (ending == ".var") {
@@ -149,7 +149,7 @@ class IecProgram {
 
     /// Types that it has for itself stand in a namespace of theirs, with the constants that it has.
     void add_types(const std::string& path, const Mark& mark) {
-        const auto source = read_source(path, to_.out, mark);
+        const auto source = read_source(path, mistakes_, mark);
         if (!source || !has_types(source)) return;
         const std::string space = space_of(path);
         Excerpts text;
@@ -163,7 +163,7 @@ class IecProgram {
 
     /// Functions that it has for itself may name these types.
     void add_functions(const std::string& path, const Mark& mark) {
-        const auto source = read_source(path, to_.out, mark);
+        const auto source = read_source(path, mistakes_, mark);
         if (!source) return;
         Excerpts text;
         text.append(usings_);
@@ -189,11 +189,12 @@ class IecProgram {
     }
 
     void refuse(const Mark& mark, const std::string& named) {
-        to_.out.add(code::not_supported, mark,
-                    fmt::format("'{}' is neither Structured Text nor a ladder, and nothing else is "
-                                "read of a program of Automation Studio",
-                                named),
-                    "convert it to Structured Text, or leave it out");
+        mistakes_.add(
+            code::not_supported, mark,
+            fmt::format("'{}' is neither Structured Text nor a ladder, and nothing else is "
+                        "read of a program of Automation Studio",
+                        named),
+            "convert it to Structured Text, or leave it out");
     }
 
     /// Each PROGRAM and ACTION of a file.
@@ -241,9 +242,9 @@ class IecProgram {
     /// Each PROGRAM and ACTION of a `.ld`: its first line, and then what is drawn.
     void add_ladders(const std::string& named, const Mark& mark) {
         constexpr std::string_view begin_of_all = "<networks", end_of_all = "</networks>";
-        const auto path = to_.resolve(path_of(named), mark, to_.out);
+        const auto path = to_.resolve(path_of(named), mark, mistakes_);
         const auto source =
-            path ? read_source(*path, to_.out, mark, {.bytes = XmlLimits{}.bytes}) : nullptr;
+            path ? read_source(*path, mistakes_, mark, {.bytes = XmlLimits{}.bytes}) : nullptr;
         if (!source) return;
         const std::string& text = source->text;
         for (std::size_t from = 0;;) {
@@ -261,9 +262,9 @@ class IecProgram {
         for (std::size_t i = 0; i < alone.text.size(); ++i)
             if ((i < drawn.begin || i >= drawn.end) && alone.text[i] != '\n') alone.text[i] = ' ';
         const auto file =
-            XmlFile::parse(std::make_shared<const SourceFile>(std::move(alone)), to_.out);
+            XmlFile::parse(std::make_shared<const SourceFile>(std::move(alone)), mistakes_);
         if (!file) return;
-        const Excerpts body = text_of_grid(*file, to_.out, made_, file->root());
+        const Excerpts body = text_of_grid(*file, mistakes_, made_, file->root());
         const Mark place = file->mark_of_tag(file->root());
         const std::string_view before = std::string_view(source.text).substr(heading.begin);
         const auto name_behind = [&](std::string_view word) {
@@ -278,9 +279,9 @@ class IecProgram {
         else if (const auto action = name_behind("ACTION "); !action.empty())
             put_action(action, body, place);
         else
-            to_.out.add(code::not_supported, place,
-                        "what is drawn here is neither a PROGRAM nor an ACTION",
-                        "write it in Structured Text");
+            mistakes_.add(code::not_supported, place,
+                          "what is drawn here is neither a PROGRAM nor an ACTION",
+                          "write it in Structured Text");
     }
 
     static void copy(Excerpts& to, const PlacedFile& file, std::size_t begin, std::size_t end) {
@@ -293,6 +294,7 @@ class IecProgram {
     Excerpts usings_, constants_, variables_, actions_, body_;
     std::vector<std::pair<std::string, Mark>> types_, functions_;  ///< files that declare its own
     MadeVariables made_;
+    Diagnostics mistakes_;
     bool has_start_ = false;
 };
 

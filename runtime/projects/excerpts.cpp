@@ -82,12 +82,14 @@ void Excerpts::append(const Excerpts& other) {
 }
 
 std::shared_ptr<const SourceFile> Excerpts::finish(std::string path, std::string part,
-                                                   std::vector<Diagnostic> mistakes) {
+                                                   const Diagnostics& mistakes) {
+    std::vector<Diagnostic> all = mistakes.list();
+    all.insert(all.end(), mistakes.warnings().begin(), mistakes.warnings().end());
     return std::make_shared<const SourceFile>(SourceFile{.path = std::move(path),
                                                          .text = std::exchange(text_, {}),
                                                          .part = std::move(part),
                                                          .excerpts = std::exchange(excerpts_, {}),
-                                                         .mistakes = std::move(mistakes)});
+                                                         .mistakes = std::move(all)});
 }
 
 }  // namespace lineshaft::projects

@@ -69,8 +69,8 @@ bool begins_section(const Token& token) {
 /// A text whose lists become statements.
 class ListsOfText {
   public:
-    ListsOfText(std::shared_ptr<const SourceFile> text, Diagnostics& out)
-        : file_(text), out_(out), tokens_(st::read_tokens(std::move(text), unread_)) {}
+    explicit ListsOfText(std::shared_ptr<const SourceFile> text)
+        : file_(text), tokens_(st::read_tokens(std::move(text), unread_)) {}
 
     std::shared_ptr<const SourceFile> rewritten();
 
@@ -94,7 +94,7 @@ class ListsOfText {
     void write(Excerpts& to, std::size_t& at, std::size_t end) const;
 
     PlacedFile file_;
-    Diagnostics& out_;
+    Diagnostics out_;
     Diagnostics unread_;
     st::Tokens tokens_;
     std::deque<Unit> units_;
@@ -195,17 +195,16 @@ std::shared_ptr<const SourceFile> ListsOfText::rewritten() {
         at = list.part.end;
     }
     write(made, at, file_.text().size());
-    SourceFile text = *made.finish(file_.file()->path);
+    SourceFile text = *made.finish(file_.file()->path, {}, out_);
     text.read_as = file_.file()->read_as;
     return std::make_shared<const SourceFile>(std::move(text));
 }
 
 }  // namespace
 
-std::shared_ptr<const SourceFile> with_lists_as_statements(std::shared_ptr<const SourceFile> text,
-                                                           Diagnostics& out) {
+std::shared_ptr<const SourceFile> with_lists_as_statements(std::shared_ptr<const SourceFile> text) {
     if (!text->excerpts.empty() || !may_have_lists(text->text)) return text;
-    return ListsOfText(std::move(text), out).rewritten();
+    return ListsOfText(std::move(text)).rewritten();
 }
 
 }  // namespace lineshaft::projects

@@ -170,8 +170,16 @@ class ProjectText {
     Excerpts made_;
 };
 
+/// The mistakes of the text that it was made of are those of what it has.
 void add_plcopen(const Reading& to, const std::shared_ptr<const SourceFile>& xml) {
+    const std::size_t before = to.project.sources.size();
     if (const auto file = XmlFile::parse(xml, to.out)) read_plcopen_of_matiec(to, *file);
+    if (xml->mistakes.empty()) return;
+    for (std::size_t i = before; i < to.project.sources.size(); ++i) {
+        SourceFile made = *to.project.sources[i];
+        made.mistakes.insert(made.mistakes.begin(), xml->mistakes.begin(), xml->mistakes.end());
+        to.project.sources[i] = std::make_shared<const SourceFile>(std::move(made));
+    }
 }
 
 /// What such a project keeps in `project.json` itself was another editor's.
@@ -292,9 +300,10 @@ void read_ladder(const Reading& to, const std::shared_ptr<const SourceFile>& sou
     xml.write("</interface><InterfaceAsPlainText><xhtml><![CDATA[", place);
     xml.append(declared);
     xml.write("]]></xhtml></InterfaceAsPlainText><body>", place);
-    xml.append(ladder_of_rungs(*ladder, to.out));
+    Diagnostics drawn;
+    xml.append(ladder_of_rungs(*ladder, drawn));
     xml.write("</body></pou></pous></types></project>", place);
-    add_plcopen(to, xml.finish(source->path));
+    add_plcopen(to, xml.finish(source->path, {}, drawn));
 }
 
 /// In C++ or Python: its pins are here, and do nothing.

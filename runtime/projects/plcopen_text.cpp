@@ -62,10 +62,7 @@ constexpr const char* open_array_scope = "variable_length_array_original_scope";
 }  // namespace
 
 std::shared_ptr<const SourceFile> PlcopenText::finish(pugi::xml_node named) {
-    std::vector<Diagnostic> mistakes = out_.list();
-    mistakes.insert(mistakes.end(), out_.warnings().begin(), out_.warnings().end());
-    return text_.finish(file_.file()->path, file_.plain(named.attribute("name")),
-                        std::move(mistakes));
+    return text_.finish(file_.file()->path, file_.plain(named.attribute("name")), out_);
 }
 
 bool PlcopenText::add_plain(pugi::xml_node element) {

@@ -65,7 +65,7 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
         read_plc_configuration(to, source);
     }
     read_organization_blocks(to, source);
-    source = with_lists_as_statements(std::move(source), to.out);
+    source = with_lists_as_statements(std::move(source));
     if (std::string form = form_in_library(path); !form.empty()) {
         SourceFile made = *source;
         made.read_as = std::move(form);

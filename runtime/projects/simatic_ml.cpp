@@ -55,10 +55,8 @@ class SimaticObject {
     }
 
     std::shared_ptr<const SourceFile> finish(std::string part) {
-        std::vector<Diagnostic> mistakes = out_.list();
-        mistakes.insert(mistakes.end(), out_.warnings().begin(), out_.warnings().end());
-        auto made = std::make_shared<SourceFile>(
-            *text_.finish(file_.file()->path, std::move(part), std::move(mistakes)));
+        auto made =
+            std::make_shared<SourceFile>(*text_.finish(file_.file()->path, std::move(part), out_));
         made->read_as = ".scl";
         return made;
     }

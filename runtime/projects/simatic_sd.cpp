@@ -16,7 +16,7 @@ using st::Word;
 /// The document put together again, block by block.
 class Document {
   public:
-    Document(std::shared_ptr<const SourceFile> file, Diagnostics& out) : text_(file), out_(out) {
+    explicit Document(std::shared_ptr<const SourceFile> file) : text_(file) {
         Diagnostics told_by_who_compiles;
         static_cast<st::Tokens&>(p_) = st::read_tokens(file, told_by_who_compiles);
     }
@@ -30,7 +30,7 @@ class Document {
         }
         finish_block();
         copy_to(text_.text().size());
-        return made_.finish(text_.file()->path, text_.file()->part);
+        return made_.finish(text_.file()->path, text_.file()->part, out_);
     }
 
   private:
@@ -86,7 +86,7 @@ class Document {
     }
 
     PlacedFile text_;
-    Diagnostics& out_;
+    Diagnostics out_;  ///< what is wrong with what is drawn
     st::Cursor p_;
     Excerpts made_, networks_;  ///< the latter: of the block at hand
     MadeVariables variables_;
@@ -102,7 +102,7 @@ void read_simatic_sd(const Reading& to, const std::string& path, const Mark& whe
     if (!source) return;
     read_organization_blocks(to, source);
     const bool is_drawn = source->text.find("RUNG") != std::string::npos;
-    to.project.add(is_drawn ? Document(source, to.out).read() : source);
+    to.project.add(is_drawn ? Document(source).read() : source);
 }
 
 }  // namespace lineshaft::projects

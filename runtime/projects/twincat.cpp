@@ -73,9 +73,7 @@ class ObjectText {
     }
 
     std::shared_ptr<const SourceFile> finish(std::string part) {
-        std::vector<Diagnostic> mistakes = out_.list();
-        mistakes.insert(mistakes.end(), out_.warnings().begin(), out_.warnings().end());
-        return text_.finish(file_.file()->path, std::move(part), std::move(mistakes));
+        return text_.finish(file_.file()->path, std::move(part), out_);
     }
 
   private:

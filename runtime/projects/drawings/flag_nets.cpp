@@ -37,6 +37,8 @@ std::string name_of(std::string_view part, bool is_negated) {
         {"Sr", "S_SR"},
         {"Jump", "JumpCoil"},
         {"Calc", "Calculate"},
+        {"MoveBlockI", "MOVE_BLK"},
+        {"MoveBlockU", "UMOVE_BLK"},
     };
     for (const auto& [name, other] : named)
         if (part == name) return std::string(other);
@@ -58,6 +60,8 @@ std::vector<std::string_view> power_pins(std::string_view part) {
     if (same_name(part, "Sr")) return {"s"};
     if (same_name(part, "Rs")) return {"r"};
     if (is_any(part, {"A", "O", "X"})) return {};
+    if (is_any(part, {"PContact", "NContact"})) return {"pre"};
+    if (is_any(part, {"SET_BF", "RESET_BF"})) return {"en", "in"};
     const std::string small = lower(part);
     if (small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||
         is_any(part, {"Not", "Jump", "Return"}))
@@ -68,7 +72,7 @@ std::vector<std::string_view> power_pins(std::string_view part) {
 /// Whether the part is executed without a condition where nothing leads to its power pin.
 bool is_unconditional(std::string_view part) {
     const std::vector<std::string_view> pins = power_pins(part);
-    return pins.empty() || is_any(pins.front(), {"en", "in"});
+    return pins.empty() || is_any(pins.front(), {"en", "in", "pre"});
 }
 
 /// Whether an open connection leaves the pin out. Power that nothing stops is always there.
@@ -84,9 +88,10 @@ bool is_power(std::string_view part, std::string_view pin) {
                                            "S_CU", "S_CD", "S_CUD"}))
         return same_name(pin, "Q");
     if (same_name(part, "CTUD")) return same_name(pin, "QU");
-    return small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||
-           is_any(part, {"Not", "A", "O", "X", "Eq", "Ne", "Gt", "Lt", "Ge", "Le", "InRange",
-                         "OutRange", "OK", "NotOk", "Jump", "Return"});
+    return same_name(pin, "out") &&
+           (small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||
+            is_any(part, {"Not", "A", "O", "X", "Eq", "Ne", "Gt", "Lt", "Ge", "Le", "InRange",
+                          "OutRange", "OK", "NotOk", "SET_BF", "RESET_BF"}));
 }
 
 /// Whether it does nothing but give what comes out of it.
@@ -116,7 +121,7 @@ struct Output {
 
 struct Piece {
     pugi::xml_node node;
-    std::string part;
+    std::string part;  ///< `TON`; of a call the block's name in quotes
     std::vector<Input> inputs = {};
     std::vector<Output> outputs = {};
     std::size_t turn = 0;  ///< in the order of the file
@@ -163,7 +168,9 @@ class FlagNet {
         }
         const bool is_call = std::string_view(part.name()) == "Call";
         elements_[id] = {.node = part,
-                         .part = plain(is_call ? part.child("CallInfo") : part, "Name"),
+                         .part = is_call
+                                     ? fmt::format("\"{}\"", plain(part.child("CallInfo"), "Name"))
+                                     : plain(part, "Name"),
                          .turn = order_.size()};
         order_.push_back(id);
     }

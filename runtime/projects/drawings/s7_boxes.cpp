@@ -113,9 +113,10 @@ Value arithmetic(Running& r) {
                                  ? fmt::format(" {} ", upper(r.it.name))
                                  : std::string(infix_of(r.it.name));
     Value made;
-    for (const auto& pin : r.it.pins)
-        if (!pin.is_output && !pin.value.is_empty())
-            made = made.is_empty() ? r.typed(pin.value) : r.binary(made, name, r.typed(pin.value));
+    for (const Argument& each : r.inputs())
+        if (!each.value.is_empty())
+            made =
+                made.is_empty() ? r.typed(each.value) : r.binary(made, name, r.typed(each.value));
     return result(r, made);
 }
 
@@ -267,6 +268,43 @@ Value formula(Running& r) {
 
 Value timer(Running& r) {
     return executed(r, "IN", "Q");
+}
+
+namespace {
+
+/// `FOR _bit1 := 0 TO count - 1 DO list[3 + _bit1] := TRUE; END_FOR`
+Value bits_assigned(Running& r, std::string_view value) {
+    const Value power = r.enable(), first = operand_of(r, "s_bit", "operand"),
+                count = r.operand("count");
+    const std::string_view text = first.text.text();
+    const std::size_t index = text.rfind('[');
+    if (!text.ends_with("]") || text.find(',', index) != text.npos) {
+        r.out.add(code::not_supported, r.it.place,
+                  fmt::format("{} is supported from an element of an ARRAY of BOOL of one "
+                              "dimension on, and this is no such element",
+                              r.it.name),
+                  "write it in a network of SCL");
+        return power;
+    }
+    const std::string bit = r.variables.make("_bit", "DINT");
+    r.open(power);
+    r.write(fmt::format("FOR {} := 0 TO ", bit));
+    r.to.append(count.text);
+    r.write(" - 1 DO\n");
+    r.write(fmt::format("{} + {}] := {};\n", text.substr(0, text.size() - 1), bit, value));
+    r.write("END_FOR\n");
+    r.close(power);
+    return power;
+}
+
+}  // namespace
+
+Value bits_set(Running& r) {
+    return bits_assigned(r, "TRUE");
+}
+
+Value bits_reset(Running& r) {
+    return bits_assigned(r, "FALSE");
 }
 
 Value up_counter(Running& r) {

@@ -21,6 +21,8 @@ Value plain_function(Running& r);
 Value typed_function(Running& r);
 Value multiplexer(Running& r);
 Value formula(Running& r);
+Value bits_set(Running& r);
+Value bits_reset(Running& r);
 Value timer(Running& r);
 Value up_counter(Running& r);
 Value down_counter(Running& r);

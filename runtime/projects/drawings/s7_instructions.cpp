@@ -1,6 +1,7 @@
 #include "runtime/projects/drawings/s7_instructions.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -251,58 +252,63 @@ Value refused(Running& r) {
 /// Names of SIMATIC SD, those of the help where they are others, and those of edition V20.
 struct Row {
     Value (*run)(Running&);
-    std::string_view names;  ///< with a blank around each
+    std::string_view names;                  ///< with a blank around each
+    std::optional<std::string_view> pins{};  ///< likewise; `in#`: numbered. None: who calls is told
 };
 constexpr Row rows[] = {
-    {contact, " contact "},
-    {inverted_contact, " i_contact "},
-    {rising_contact, " p_contact "},
-    {falling_contact, " n_contact "},
-    {rising_power, " p_trig "},
-    {falling_power, " n_trig "},
-    {inverted_power, " not "},
+    {contact, " contact ", " operand "},
+    {inverted_contact, " i_contact ", " operand "},
+    {rising_contact, " p_contact ", " operand bit "},
+    {falling_contact, " n_contact ", " operand bit "},
+    {rising_power, " p_trig ", " bit "},
+    {falling_power, " n_trig ", " bit "},
+    {inverted_power, " not ", ""},
     {comparison,
-     " eq_contact ne_contact ge_contact gt_contact le_contact lt_contact eq ne ge gt le lt "},
-    {in_range, " inrange in_range "},
-    {out_of_range, " outrange out_range "},
-    {valid_contact, " ok isvalidcontact "},
-    {invalid_contact, " nok not_ok isnotvalidcontact "},
-    {and_gate, " a "},
-    {or_gate, " o "},
-    {xor_gate, " x "},
-    {coil, " coil "},
-    {inverted_coil, " i_coil "},
-    {set_coil, " s_coil "},
-    {reset_coil, " r_coil "},
-    {rising_coil, " p_coil "},
-    {falling_coil, " n_coil "},
-    {timer_coil, " tp_coil ton_coil tof_coil tonr_coil "},
-    {timer_reset, " rt_coil resetiectimercoil "},
-    {timer_preset, " pt_coil "},
-    {jump_coil, " jumpcoil "},
-    {inverted_jump_coil, " i_jumpcoil "},
-    {return_coil, " return returntrue returncoil "},
-    {failed_return_coil, " returnfalse "},
-    {reset_set, " s_rs rs "},
-    {set_reset, " s_sr sr "},
-    {move, " move s_move "},
-    {arithmetic, " add sub mul div mod and or xor "},
-    {negation, " neg "},
-    {inversion, " inv "},
-    {power_of, " expt "},
-    {increment, " inc "},
-    {decrement, " dec "},
-    {conversion, " convert "},
-    {limit, " limit "},
-    {scale, " scale scale_x "},
-    {normalize, " normalize norm_x "},
+     " eq_contact ne_contact ge_contact gt_contact le_contact lt_contact eq ne ge gt le lt ",
+     " in# out "},
+    {in_range, " inrange in_range ", " min in max "},
+    {out_of_range, " outrange out_range ", " min in max "},
+    {valid_contact, " ok isvalidcontact ", " operand "},
+    {invalid_contact, " nok not_ok isnotvalidcontact ", " operand "},
+    {and_gate, " a ", " in# "},
+    {or_gate, " o ", " in# "},
+    {xor_gate, " x ", " in# "},
+    {coil, " coil ", " operand "},
+    {inverted_coil, " i_coil ", " operand "},
+    {set_coil, " s_coil ", " operand "},
+    {reset_coil, " r_coil ", " operand "},
+    {rising_coil, " p_coil ", " operand bit "},
+    {falling_coil, " n_coil ", " operand bit "},
+    {timer_coil, " tp_coil ton_coil tof_coil tonr_coil ", " timer pt "},
+    {timer_reset, " rt_coil resetiectimercoil ", " timer operand "},
+    {timer_preset, " pt_coil ", " timer operand pt "},
+    {jump_coil, " jumpcoil ", " operand "},
+    {inverted_jump_coil, " i_jumpcoil ", " operand "},
+    {return_coil, " return returntrue returncoil ", ""},
+    {failed_return_coil, " returnfalse ", ""},
+    {reset_set, " s_rs rs ", " s s1 r r1 operand "},
+    {set_reset, " s_sr sr ", " s s1 r r1 operand "},
+    {move, " move s_move ", " in out# "},
+    {arithmetic, " add sub mul div mod and or xor ", " in# out "},
+    {negation, " neg ", " in out "},
+    {inversion, " inv ", " in out "},
+    {power_of, " expt ", " in# out "},
+    {increment, " inc ", " operand "},
+    {decrement, " dec ", " operand "},
+    {conversion, " convert ", " in out "},
+    {limit, " limit ", " mn min in mx max out "},
+    {scale, " scale scale_x ", " min value max out in hi_lim lo_lim bipolar ret_val "},
+    {normalize, " normalize norm_x ", " min value max out "},
     {multiplexer, " mux "},
     {formula, " calculate calc "},
-    {plain_function, " min max sel "},
+    {plain_function, " min max sel ", " in# g out "},
     {typed_function,
      " abs sqr sqrt ln exp sin cos tan asin acos atan frac round ceil floor trunc swap shl shr rol "
-     "ror "},
-    {text_conversion, " s_conv "},
+     "ror ",
+     " in n out "},
+    {text_conversion, " s_conv ", " in out "},
+    {bits_set, " set_bf ", " s_bit operand count "},
+    {bits_reset, " reset_bf ", " s_bit operand count "},
     {timer, " tp ton tof tonr "},
     {up_counter, " ctu "},
     {down_counter, " ctd "},
@@ -318,6 +324,24 @@ const Row* row_of(std::string_view name) {
     const auto has_name = [&](const Row& row) { return row.names.find(word) != row.names.npos; };
     const auto* found = std::ranges::find_if(rows, has_name);
     return found == std::end(rows) ? nullptr : found;
+}
+
+/// `in2` is one of the numbered `in#`.
+bool has_pin(const Row& row, std::string_view pin) {
+    const std::string small = lower(pin);
+    const std::string_view stem(small.data(), small.find_last_not_of("0123456789") + 1);
+    return !row.pins || row.pins->find(fmt::format(" {} ", small)) != row.pins->npos ||
+           (stem != small && row.pins->find(fmt::format(" {}# ", stem)) != row.pins->npos);
+}
+
+/// What stands at a pin that the instruction does not have would be left out.
+void refuse_other_pins(const Row& row, const S7Instruction& it, Diagnostics& out) {
+    for (const auto& pin : it.pins)
+        if (!pin.name.empty() && !has_pin(row, pin.name))
+            out.add(code::not_supported, it.place,
+                    fmt::format("the instruction {} has no {} '{}' here", it.name,
+                                pin.is_output ? "output" : "input", pin.name),
+                    "write it in a network of SCL");
 }
 
 bool is_unknown_form(std::string_view name) {
@@ -373,6 +397,7 @@ Value S7Instructions::run(Excerpts& to, const S7Instruction& instruction, Value 
     if (power.text.text().size() > longest) power = fixed(to, std::move(power), instruction.place);
     s7::Running r{*this, out_, variables_, to, instruction, std::move(power), goes_on};
     const s7::Row* row = s7::row_of(instruction.name);
+    if (row) s7::refuse_other_pins(*row, instruction, out_);
     if (row) return row->run(r);
     if (!instruction.callee.is_empty()) return s7::called(r);
     return s7::is_unknown_form(instruction.name) ? s7::refused(r) : s7::other_function(r);

@@ -1,6 +1,7 @@
 #include "runtime/projects/drawings/s7_running.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -103,6 +104,12 @@ std::vector<Argument> Running::inputs() const {
     std::vector<Argument> made;
     for (const auto& pin : it.pins)
         if (!pin.is_output) made.push_back({pin.name, pin.value});
+    const auto key = [](const Argument& each) {
+        const std::string small = lower(each.pin);
+        const std::size_t stem = small.find_last_not_of("0123456789") + 1;
+        return std::tuple(small.substr(0, stem), small.size(), small);
+    };
+    std::ranges::stable_sort(made, {}, key);
     return made;
 }
 

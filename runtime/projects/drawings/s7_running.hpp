@@ -55,6 +55,8 @@ struct Running {
     Value call(std::string_view function, const std::vector<Argument>& given) const;
     /// All pins but one, behind `first`.
     std::vector<Argument> pins(std::string_view but = {}, std::vector<Argument> first = {}) const;
+    /// By their names and then their numbers, in whatever order the file has them; those without a
+    /// name as they stand.
     std::vector<Argument> inputs() const;
 };
 

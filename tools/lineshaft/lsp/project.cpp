@@ -146,7 +146,7 @@ std::optional<CheckedProgram> Project::check(const std::string& root, Diagnostic
     if (!is_structured_text(root)) return is_ours(*file) ? check_file(root, {}, out) : std::nullopt;
     auto together = sources_of(root);
     if (!st::is_test_file(file)) {
-        for (auto& text : together) text = projects::with_lists_as_statements(std::move(text), out);
+        for (auto& text : together) text = projects::with_lists_as_statements(std::move(text));
         st::compile(together, standard_blocks(), out);
         return {};
     }
