@@ -108,7 +108,7 @@ std::optional<Wide> check_whole(Checking& c, Expression*& e, const Type& type) {
                    "declare it in VAR CONSTANT");
         return {};
     }
-    if (!coerce(c, e, type)) return {};
+    if (!coerce(c, e, type) || !evaluate(c, e)) return {};
     return e->constant.integer;
 }
 

@@ -214,7 +214,7 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (from.kind == Kind::text || to.kind == Kind::text) return false;
     if (from.kind == Kind::enumeration) {
-        if (!to.is_integer() || to.is_subrange) return false;
+        if ((!to.is_integer() && !to.is_bits()) || to.is_subrange) return false;
         const auto value = static_cast<std::size_t>(e->constant.integer);
         const Wide number = from.counted ? e->constant.integer : from.numbers[value];
         return become(c, e, to, {.integer = wrapped(to, number)});
