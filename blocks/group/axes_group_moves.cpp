@@ -239,7 +239,7 @@ PathJoint AxesGroup::joint_of(const GroupRequest& request, bool is_within, const
     const double parameter = request.corner_parameter;
     if (request.corner == CornerMode::corner_distance) joint.distance = parameter;
     if (request.corner == CornerMode::corner_deviation)
-        joint.distance = distance_within(parameter, before, curve);
+        joint.distance = PathJoint::any, joint.deviation = parameter;
     if (request.corner == CornerMode::start_velocity && lines)
         joint.distance = corner_distance_at(parameter, before, curve,
                                             limits_between(last.limits, limits, joint.blend));

@@ -273,10 +273,13 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     PathStretch& cut = piece_at(ring, path.stretches - 1).stretch;
     const PathCurve curve = last.curve;
     if (!curve.is_line_or_arc() || !next.is_line_or_arc() || is_smooth(curve, next)) return false;
-    const double far = std::min(joint.distance, room_of_corner(path, ring, next));
+    const double most = std::min(joint.distance, room_of_corner(path, ring, next));
+    const double far = distance_within(joint.deviation, curve, next, most);
     const PathLimits both = limits_between(last.limits, limits, joint.blend);
+    constexpr double least = 1e-9;
     Round round;
-    if (!(far > 0) || !find_round(curve, next, far, both, round) ||
+    if (!(far > least * (curve.length + next.length)) ||
+        !find_round(curve, next, far, both, round) ||
         path.count - path.first + 1 + round.count > ring.size())
         return false;
     next.cut_start(far);

@@ -10,11 +10,14 @@
 
 namespace lineshaft {
 
-/// How the joint before a piece is passed.
+/// How the joint before a piece is passed. Where `distance` > 0 two lines or arcs are joined by a
+/// corner or a transition.
 struct PathJoint {
-    double velocity = std::numeric_limits<double>::infinity();  ///< at most; 0: a stop [u/s]
-    double distance = 0;  ///< > 0: two lines are joined by a corner this far from the vertex [u]
+    static constexpr double any = std::numeric_limits<double>::infinity();
+    double velocity = any;  ///< at most; 0: a stop [u/s]
+    double distance = 0;    ///< from the vertex, at most, of where the corner begins and ends [u]
     PathBlend blend = PathBlend::low;
+    double deviation = any;  ///< at most, of the corner from the vertex and from both pieces [u]
 };
 
 /// The motion along the path at one instant, and that of the axes.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <sleef.h>
 
@@ -163,52 +165,94 @@ double distance(const PathVector& a, const PathVector& b) {
     return std::sqrt(sum);
 }
 
-/// From a point to the nearest one of a line or an arc near the length s.
-double distance_to(const PathCurve& curve, const PathVector& x, double s) {
-    for (int step = 0; step < 8; ++step) {
-        const PathPoint near = curve.at(s);
-        double along = 0;
-        for (std::size_t i = 0; i < path_space; ++i)
-            along += (x[i] - near.position[i]) * near.tangent[i];
-        s = std::clamp(s + along, 0.0, curve.length);
-    }
-    return distance(x, curve.at(s).position);
+double along(const PathVector& a, const PathVector& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path_space; ++i) sum += a[i] * b[i];
+    return sum;
 }
 
-/// How far the transition that begins `far` before the joint is away from both curves: at 33 places
-/// and two hundredths more.
+/// A part of a line or of an arc, from one length of it to another.
+struct Part {
+    const PathCurve& curve;
+    double from = 0, to = 0;
+    PathVector begin = curve.at(from).position, end = curve.at(to).position;
+
+    /// How far a point is from the nearest one of the part.
+    double distance_to(const PathVector& x) const {
+        PathVector off{};
+        for (std::size_t i = 0; i < path_space; ++i) off[i] = x[i] - curve.origin[i];
+        const double u = along(off, curve.u), w = along(off, curve.w);
+        const bool arc = curve.kind == PathCurveKind::arc;
+        const double angle = arc ? Sleef_cinz_atan2d1_u10purec(w, u) : 0;
+        const double s = arc ? curve.radius * (angle < 0 ? angle + 2 * std::numbers::pi : angle)
+                             : u / along(curve.u, curve.u);
+        const double ends = std::min(distance(x, begin), distance(x, end));
+        return s > from && s < to ? std::min(ends, distance(x, curve.at(s).position)) : ends;
+    }
+};
+
+/// The greatest of f(t) for t in 0..1: of 33 places, and around the greatest of these.
+template <class Function>
+double greatest_of(Function f) {
+    constexpr int places = 32, steps = 12;
+    double at = 0, most = f(0.0);
+    for (int k = 1; k <= places; ++k) {
+        const double t = static_cast<double>(k) / places;
+        if (const double here = f(t); here > most) at = t, most = here;
+    }
+    double a = std::max(0.0, at - 1.0 / places), b = std::min(1.0, at + 1.0 / places);
+    for (int step = 0; step < steps; ++step) {
+        const double c = a + (b - a) / 3, d = b - (b - a) / 3, at_c = f(c), at_d = f(d);
+        most = std::max({most, at_c, at_d});
+        (at_c > at_d ? b : a) = at_c > at_d ? d : c;
+    }
+    return most;
+}
+
+/// Between two points, by t from 0 to 1 and with tangents as long as it is.
+PathCurve whole_between(const PathPoint& from, const PathPoint& to) {
+    double scale = distance(from.position, to.position);
+    for (int step = 0; step < 2; ++step) scale = length_of(quintic(from, to, scale));
+    return quintic(from, to, scale);
+}
+
+/// How far the transition that begins and ends `far` from the joint passes it, or is away from what
+/// it is put in for: whichever is more, and a hundredth.
 double deviation_of(const PathCurve& before, const PathCurve& after, double far) {
-    const PathCurve c = quintic(before.at(before.length - far), after.at(far), 2 * far);
-    constexpr int places = 33;
-    double most = 0;
-    for (int k = 0; k < places; ++k) {
-        const double t = static_cast<double>(k) / (places - 1);
+    const Part left{before, before.length - far, before.length}, right{after, 0, far};
+    const PathCurve c = whole_between(before.at(left.from), after.at(right.to));
+    const auto place = [&](double t) {
         PathVector x{};
         for (std::size_t i = 0; i < path_space; ++i) x[i] = value_of(polynomial_of(c, i), t);
-        const double near =
-            std::min(distance_to(before, x, before.length - std::max(0.0, far * (1 - 2 * t))),
-                     distance_to(after, x, std::max(0.0, far * (2 * t - 1))));
-        most = std::max(most, near);
-    }
-    return 1.02 * most;
+        return x;
+    };
+    const double off = greatest_of([&](double t) {
+        const PathVector x = place(t);
+        return std::min(left.distance_to(x), right.distance_to(x));
+    });
+    const double passing = -greatest_of([&](double t) { return -distance(place(t), left.end); });
+    return 1.01 * std::max(off, passing);
+}
+
+/// Into parts as even as 1e-4, or where these do not suffice as they can be.
+std::size_t divided(const PathCurve& whole, std::span<PathCurve, most_spline_parts> out) {
+    for (const double most_uneven : {1e-4, 4e-4, 2e-3, 1e-2})
+        if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
+    return 0;
 }
 
 }  // namespace
 
 std::size_t spline_between(const PathPoint& from, const PathPoint& to,
                            std::span<PathCurve, most_spline_parts> out) {
-    double scale = distance(from.position, to.position);
-    if (!(scale > 0) || !std::isfinite(scale)) return 0;
-    for (int step = 0; step < 2; ++step) scale = length_of(quintic(from, to, scale));
-    return quintic_between(scaled(from, scale), scaled(to, scale), out);
+    const double chord = distance(from.position, to.position);
+    if (!(chord > 0) || !std::isfinite(chord)) return 0;
+    return divided(whole_between(from, to), out);
 }
 
 std::size_t quintic_between(const PathPoint& from, const PathPoint& to,
                             std::span<PathCurve, most_spline_parts> out) {
-    const PathCurve whole = quintic(from, to);
-    for (const double most_uneven : {1e-4, 4e-4, 2e-3, 1e-2})
-        if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
-    return 0;
+    return divided(quintic(from, to), out);
 }
 
 bool turns_back(const PathVector& a, const PathVector& b) {
@@ -255,13 +299,15 @@ PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVec
     return out;
 }
 
-double distance_within(double deviation, const PathCurve& before, const PathCurve& after) {
-    if (!before.is_line_or_arc() || !after.is_line_or_arc() || !(deviation > 0)) return 0;
+double distance_within(double deviation, const PathCurve& before, const PathCurve& after,
+                       double most) {
+    if (!(deviation > 0) || !(most > 0)) return 0;
+    if (deviation == std::numeric_limits<double>::infinity()) return most;
     if (before.kind == PathCurveKind::line && after.kind == PathCurveKind::line) {
         const double bend = bend_between(before, after);
-        return bend > 0 ? 16 * deviation / (3 * bend) : 0;
+        return bend > 0 ? std::min(most, 16 * deviation / (3 * bend)) : 0;
     }
-    double least = 0, most = std::min(before.length, 0.5 * after.length);
+    double least = 0;
     if (deviation_of(before, after, most) <= deviation) return most;
     for (int step = 0; step < 24; ++step) {
         const double middle = 0.5 * (least + most);

@@ -32,8 +32,10 @@ PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVec
 /// In the first three axes: b is against a, up to the sine 1e-6 of an angle.
 bool turns_back(const PathVector& a, const PathVector& b);
 
-/// How far from the joint of two lines or arcs a corner or a transition may begin that stays within
-/// `deviation` of them [u]; 0 where there is none.
-double distance_within(double deviation, const PathCurve& before, const PathCurve& after);
+/// How far from the joint of two lines or arcs, `most` at most, a corner or a transition may begin
+/// and end that passes the vertex within `deviation` and stays as near to both [u]; 0 where there
+/// is none.
+double distance_within(double deviation, const PathCurve& before, const PathCurve& after,
+                       double most);
 
 }  // namespace lineshaft

@@ -252,9 +252,7 @@ void PathPlanner::append(const PathCurve& curve, std::string& rows) {
         run(rows, false);
     if (path_.lost || interrupt_requested) return;
     PathJoint joint;
-    if (!path_.finished())
-        joint.distance = distance_within(options_.deviation,
-                                         ring_[(path_.count - 1) % ring_.size()].curve, curve);
+    joint.distance = PathJoint::any, joint.deviation = options_.deviation;
     fault_ = path_.append(ring_, curve, limits_, joint);
     last_ = curve;
 }

@@ -172,7 +172,7 @@ TEST_CASE("path_spline: a line runs into an arc through a transition within the 
     REQUIRE(line_to({-30, 0}, {0, 0}, line) == PathFault::none);
     REQUIRE(arc_through({0, 0}, {20, 20}, {0, 40}, arc) == PathFault::none);
     constexpr double deviation = 0.01;
-    const double far = distance_within(deviation, line, arc);
+    const double far = distance_within(deviation, line, arc, line.length);
     CHECK(far > 0.5);
     const PathLimits limits = limits_of_all({100, 2000, 5e4});
     std::vector<PathPiece> ring(16);

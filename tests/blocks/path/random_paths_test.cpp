@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -11,22 +10,12 @@
 #include "blocks/path/path.hpp"
 #include "blocks/path/path_cubic.hpp"
 #include "tests/blocks/path/path_motions.hpp"
+#include "tests/blocks/path/path_random.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
 
 namespace {
-
-class Random {
-  public:
-    explicit Random(std::uint64_t seed) : numbers(seed) {}
-    double share() { return static_cast<double>(numbers() >> 11) * 0x1p-53; }
-    double between(double least, double most) { return least + (most - least) * share(); }
-    double decades(double least, double most) { return std::pow(10, between(least, most)); }
-
-  private:
-    std::mt19937_64 numbers;
-};
 
 PathVector random_point(Random& random, std::size_t axes, double size) {
     PathVector x{};
