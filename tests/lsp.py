@@ -443,7 +443,7 @@ class Opened:
 @check
 def a_hierarchy_is_renamed_in_all_files_from_wherever_one_stands():
     on = Opened(THINGS)
-    for new, places in (("Perform", [("IThing.st", "Act"), ("Thing.st", "Act"), ("Better.st", "Act"), ("Plain.st", "Act"), ("Main.st", "Act"), ("test_thing.st", "Act")]),
+    for new, places in (("Perform", [("IThing.st", "Act"), ("Thing.st", "Act"), ("Better.st", "Act"), ("Better.st", "Act :="), ("Plain.st", "Act"), ("Main.st", "Act"), ("test_thing.st", "Act")]),
                         ("much", [("IThing.st", "k :"), ("Thing.st", "k :"), ("Better.st", "k;"), ("Plain.st", "k;"), ("Main.st", "k :=")]),
                         ("IActs", [("IThing.st", "IThing"), ("Thing.st", "IThing"), ("Joins.st", "IThing"), ("Main.st", "IThing")]),
                         ("Base", [("Thing.st", "Thing"), ("Better.st", "Thing"), ("Main.st", "Thing;")]),
@@ -582,6 +582,16 @@ def outline_folding_lenses_and_quick_fixes():
     [action] = on.client.ask("textDocument/codeAction", document | {"range": told["range"], "context": {"diagnostics": [told]}})
     [edit] = action["edit"]["changes"][uri_of(on.block)]
     assert edit == {"range": told["range"], "newText": "wanted"}, action
+    on.end()
+
+
+@check
+def tests_of_fixtures_have_lenses():
+    on = Opened({"t.st": "NAMESPACE N\n{TestFixture}\nCLASS T\n{Test}\nMETHOD PUBLIC One\nEND_METHOD\n{Test(x := 3)}\nMETHOD PUBLIC Two\n"
+                         "VAR_INPUT x : INT; END_VAR\nEND_METHOD\nMETHOD PUBLIC Three\nEND_METHOD\nEND_CLASS\nEND_NAMESPACE\n"})
+    lenses = on.answer("codeLens", "t.st", "T")["result"]
+    assert [(lens["range"]["start"]["line"], lens["command"]["title"], lens["command"]["arguments"][1]) for lens in lenses] == [
+        (4, "test", "T.One"), (4, "debug", "T.One"), (7, "test", "T.Two(x := 3)"), (7, "debug", "T.Two(x := 3)")], lenses
     on.end()
 
 

@@ -1264,7 +1264,12 @@ def check_apax():
     write("package/test/limits.st", "USING AxUnit.Assert;\nUSING N;\n{TestFixture}\nCLASS T\nVAR PROTECTED limits : Limits; END_VAR\n"
           "{Test}\nMETHOD PUBLIC Reads\nVAR_EXTERNAL CONSTANT MOST : DINT; END_VAR\n"
           "Equal(expected := MOST, actual := limits.Top());\nEND_METHOD\nEND_CLASS\n")
-    assert "1 of 1 passed" in run("test", "package")
+    write("package/test/deep/limits.st", (work / "package/test/limits.st").read_text().replace("CLASS T\n", "CLASS Deep\n"))
+    assert "2 of 2 passed" in run("test", "package")
+    for part in "test/limits.st", "test/deep/limits.st", "test/deep":  # each finds what the package has
+        for named, folder in (f"package/{part}", work), (work / "package" / part, work), (part, work / "package"):
+            assert "1 of 1 passed" in run("test", named, cwd=folder), (part, named)
+    run("test", "../test/deep", cwd=work / "package/src")
     write("package/SystemConstants/limits.st", (work / "package/src/limits.st").read_text())
     write("package/src/main.st", "PROGRAM Main\nVAR c : Counter; END_VAR\nc();\nEND_PROGRAM\n")
     run("check", "package")

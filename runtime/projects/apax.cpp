@@ -60,4 +60,14 @@ std::vector<fs::path> packages_beside(const fs::path& folder) {
     return found;
 }
 
+fs::path package_of(const fs::path& path) {
+    std::error_code unknown;
+    const fs::path here = fs::current_path(unknown);
+    for (fs::path at = (here / path).lexically_normal(), last; at != last;
+         last = at, at = at.parent_path())
+        if (fs::exists(at / "apax.yml", unknown) && fs::is_directory(at / "src", unknown))
+            return path.is_absolute() ? at : at.lexically_proximate(here);
+    return {};
+}
+
 }  // namespace lineshaft::projects

@@ -115,10 +115,13 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
     if (is_plcproj(path)) return sources_of_project(path, more);
     auto pool = std::make_shared<st::SourcePool>();
     for (const std::string& source : more) add_sources(*pool, source, true);
-    if (fs::is_directory(path)) {
+    const fs::path package = is_of_project(path) ? fs::path() : projects::package_of(path);
+    if (!package.empty()) {
+        add_sources(*pool, package.string(), true);
+        for (const fs::path& beside : projects::packages_beside(package))
+            add_sources(*pool, (beside / "src").string(), true);
+    } else if (fs::is_directory(path)) {
         add_sources(*pool, path, true);
-        for (const fs::path& package : projects::packages_beside(path))
-            add_sources(*pool, (package / "src").string(), true);
     } else if (is_of_project(path)) {
         for (const auto& source : project_of(path).sources) pool->add(source);
         add_sources(*pool, fs::path(path).parent_path().string(), true);
@@ -131,13 +134,6 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
     }
     pool->leave_out_tcunit();
     return pool;
-}
-
-/// The file itself, or what its fixtures are.
-std::vector<std::shared_ptr<const SourceFile>> texts_of_tests(
-    const std::shared_ptr<const SourceFile>& file) {
-    if (!projects::has_fixtures(*file) || st::is_test_file(file)) return {file};
-    return projects::tests_of_fixtures(file);
 }
 
 std::optional<st::TestSuite> compile_text(const TestFile& tests,
@@ -440,6 +436,12 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
 bool has_forms(const std::string& folder) {
     std::error_code error;
     return fs::is_directory(folder, error) && !files_of(folder, true, is_form).empty();
+}
+
+std::vector<std::shared_ptr<const SourceFile>> texts_of_tests(
+    const std::shared_ptr<const SourceFile>& file) {
+    if (!projects::has_fixtures(*file) || st::is_test_file(file)) return {file};
+    return projects::tests_of_fixtures(file);
 }
 
 bool has_tests(const std::shared_ptr<const SourceFile>& file) {

@@ -33,11 +33,16 @@ struct TestOptions {
 };
 
 /// The file itself, or all that can be tested below a folder, sorted; with what its TESTs see: of a
-/// folder all below it, of a file its folder, and the one around that if it is `tests`.
+/// folder all below it, of a file its folder, and the one around that if it is `tests`; of what a
+/// package of SIMATIC AX has, all of the package.
 std::vector<TestFile> find_tests(const std::string& path, const std::vector<std::string>& sources);
 
 /// Whether programs, studies or fits stand below a folder.
 bool has_forms(const std::string& folder);
+
+/// The file itself, or what its fixtures are: files of TESTs.
+std::vector<std::shared_ptr<const SourceFile>> texts_of_tests(
+    const std::shared_ptr<const SourceFile>& file);
 
 /// Whether a file has TESTs, or fixtures of SIMATIC AX.
 bool has_tests(const std::shared_ptr<const SourceFile>& file);

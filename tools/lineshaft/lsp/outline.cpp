@@ -6,6 +6,7 @@
 #include "runtime/st/syntax/style.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/lsp/requests.hpp"
+#include "tools/lineshaft/test_files.hpp"
 
 namespace lineshaft::lsp {
 
@@ -272,12 +273,15 @@ Json code_lenses(Session& session, const Json& params) {
         return lenses;
     }
     Diagnostics untold;
-    const st::Tokens all = st::read_tokens(file, untold, st::SourceKind::tests);
-    for (std::size_t i = 0; i + 1 < all.tokens.size(); ++i)
-        if (all.tokens[i].word == st::Word::test_ && all.tokens[i + 1].word == st::Word::text) {
-            add(all.tokens[i].place.begin, "test", {where->path, all.tokens[i + 1].text});
-            add(all.tokens[i].place.begin, "debug", {where->path, all.tokens[i + 1].text});
+    for (const auto& tests : texts_of_tests(file)) {
+        const st::Tokens all = st::read_tokens(tests, untold, st::SourceKind::tests);
+        for (std::size_t i = 0; i + 1 < all.tokens.size(); ++i) {
+            const st::Token &word = all.tokens[i], &name = all.tokens[i + 1];
+            if (word.word != st::Word::test_ || name.word != st::Word::text) continue;
+            const std::size_t at = text.bytes_of(word.place.mark()).first;
+            for (const char* title : {"test", "debug"}) add(at, title, {where->path, name.text});
         }
+    }
     return lenses;
 }
 

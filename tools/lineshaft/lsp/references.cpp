@@ -215,13 +215,15 @@ bool is_parameter(const st::Routine& method, const st::Variable& variable) {
     return std::ranges::find(all, &variable) != all.end();
 }
 
-/// Where that is declared which has its name together with it.
+/// Where that is declared which has its name together with it. What a method gives back has the
+/// method's name.
 Places declared_with(Session& session, const Meaning& meaning, const st::NameUse& use) {
     const st::Routine* method = method_of(meaning, use);
-    const bool is_alone = !method || (use.variable && !is_parameter(*method, *use.variable));
-    if (is_alone) return {use.declared};
-    return Family(session, *method)
-        .declared(use.variable ? std::string(use.variable->text) : std::string());
+    if (!method) return {use.declared};
+    if (is_same(use.declared, method->pou->name.place))
+        return Family(session, *method).declared({});
+    if (!use.variable || !is_parameter(*method, *use.variable)) return {use.declared};
+    return Family(session, *method).declared(std::string(use.variable->text));
 }
 
 }  // namespace
