@@ -32,6 +32,9 @@ assert all(isinstance(bool(v), bool) for v in trace["change.InGear"]) and not al
 
 machine = lineshaft.run(source / "programs/08_state_machine.yaml")
 assert set(machine.trace["cutter.state"]) >= {"idle", "sync", "cut", "back"}, set(machine.trace["cutter.state"])
+numbers = lineshaft.run(source / "tests/cases/enumerations_are_their_numbers/program.yaml")
+assert numbers["main.state"] == 11 and numbers["main.of_number"] == -3, numbers.signals
+assert set(numbers.trace["main.of_number"]) == {"Idle", "15", "Fault", "-3"}, set(numbers.trace["main.of_number"])
 forced = lineshaft.run(source / "programs/03_ratio_change.yaml", force=["change.RatioNumerator=3@1s..3s"])
 assert not forced.ok and forced.trace["slave.velocity"][-1] != run.trace["slave.velocity"][-1]
 try:

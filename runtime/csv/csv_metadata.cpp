@@ -28,17 +28,29 @@ Type type_of(const Json& column) {
     return column.contains("values") ? Type::enumeration : Type::integer;
 }
 
+/// One for each name; none where these have 0, 1, 2, ...
+std::vector<std::int64_t> numbers_of(const Json& column, std::size_t names) {
+    const auto list = column.find("lineshaft:numbers");
+    if (list == column.end() || !list->is_array() || list->size() != names) return {};
+    std::vector<std::int64_t> numbers;
+    for (const Json& number : *list)
+        numbers.push_back(number.is_number_integer() ? number.get<std::int64_t>() : 0);
+    return numbers;
+}
+
 CsvMetadata::Column column_of(const Json& column) {
     CsvMetadata::Column out{.title = text_at(column, "titles"),
                             .signal = text_at(column, "lineshaft:signal"),
                             .type = type_of(column),
                             .unit = text_at(column, "unit"),
-                            .values = {}};
+                            .values = {},
+                            .numbers = {}};
     if (out.signal.empty()) out.signal = out.title;
     const auto values = column.find("values");
     if (values == column.end() || !values->is_array()) return out;
     for (const Json& value : *values)
         out.values.push_back(value.is_string() ? value.get<std::string>() : std::string());
+    out.numbers = numbers_of(column, out.values.size());
     return out;
 }
 

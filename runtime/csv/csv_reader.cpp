@@ -118,9 +118,7 @@ void append(std::vector<double>& values, double value) {
 
 /// Whether a column of whole numbers may hold the value.
 bool fits(const CsvColumn& column, Wide value) {
-    if (column.type == Type::integer) return true;
-    const auto values = static_cast<std::int64_t>(column.names.size());
-    return value >= 0 && value < (column.type == Type::boolean ? 2 : values);
+    return column.type != Type::boolean || value == 0 || value == 1;
 }
 
 class CsvReader {
@@ -270,6 +268,7 @@ CsvColumn CsvReader::column_of(std::string_view cell) const {
         column.unit = known->unit;
         column.type = known->type;
         column.names = known->values;
+        column.numbers = known->numbers;
     }
     for (const auto& [name, values] : options_.names)
         if (name == column.name) column.names = values;
@@ -418,7 +417,8 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
     }
     const auto named = std::ranges::find(column.names, text);
     if (wrong && named != column.names.end())
-        real = static_cast<double>(named - column.names.begin());
+        real = static_cast<double>(
+            column.number(static_cast<std::size_t>(named - column.names.begin())));
     else if (wrong)
         fail(code::cell_is_no_number, cell,
              fmt::format("'{}' in column '{}' {}", text, column.title, wrong), help_with(column));

@@ -18,9 +18,10 @@ struct CsvColumn {
     std::string name;   ///< of the signal where the sidecar tells it, else the title without unit
     std::string title;  ///< as the header has it
     std::string unit;  ///< from the sidecar, or from a title `name [unit]`; empty: none, or unknown
-    Type type = Type::real;          ///< from the sidecar; without one all are real
-    std::vector<std::string> names;  ///< of an enumeration; cells may have them
-    std::vector<double> values;      ///< a row each; not a number where the cell is empty
+    Type type = Type::real;             ///< from the sidecar; without one all are real
+    std::vector<std::string> names;     ///< of an enumeration; cells may have them
+    std::vector<std::int64_t> numbers;  ///< of the names; empty: 0, 1, 2, ...
+    std::vector<double> values;         ///< a row each; not a number where the cell is empty
 
     struct Large {
         std::size_t row;
@@ -28,6 +29,10 @@ struct CsvColumn {
     };
     std::vector<Large> large;  ///< integers from 2^53 on, which `values` rounds; by row
 
+    /// Of the name that stands at `place`.
+    std::int64_t number(std::size_t place) const {
+        return numbers.empty() ? static_cast<std::int64_t>(place) : numbers[place];
+    }
     bool is_missing(std::size_t row) const { return values[row] != values[row]; }
     /// Exact, of 64 bits with or without a sign; 0 where the cell is empty. Of type integer only.
     Wide integer(std::size_t row) const;

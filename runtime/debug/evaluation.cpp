@@ -176,6 +176,13 @@ class Reckoning {
         return {.name = std::string(name)};
     }
 
+    /// Names and numbers are those of the enumeration.
+    static bool is_called(const st::Type& type, const ValueNames& names) {
+        const std::vector<std::int64_t> numbers = names.odd_numbers();
+        return std::ranges::equal(type.values, names) &&
+               (type.counted ? numbers.empty() : type.numbers == numbers);
+    }
+
     /// Of another block of the program.
     std::optional<Operand> signal(std::string_view name) const {
         const Signal* signal = frame_.machine->find(name);
@@ -201,7 +208,7 @@ class Reckoning {
         }
         if (named.type == Is::enumeration)
             for (const st::Type& each : checked_.types)
-                if (std::ranges::equal(each.values, named.names)) type = &each;
+                if (is_called(each, named.names)) type = &each;
         found.seat = {type, nullptr, &frame_};
         return found;
     }

@@ -74,11 +74,11 @@ FeedAndScan shortest_way(const Call& call);
 /// A block's `error` output, looked at after each scan of its task.
 struct ErrorFlag {
     const bool* error = nullptr;
-    const std::int64_t* error_id = nullptr;   ///< may be null
-    std::span<const std::string_view> names;  ///< of error_id
-    std::string block;                        ///< `'drive' (servo_drive)`
-    const BlockType* type = nullptr;          ///< may be null
-    const std::byte* memory = nullptr;        ///< of the block
+    const std::int64_t* error_id = nullptr;  ///< may be null
+    ValueNames names;                        ///< of error_id
+    std::string block;                       ///< `'drive' (servo_drive)`
+    const BlockType* type = nullptr;         ///< may be null
+    const std::byte* memory = nullptr;       ///< of the block
 };
 
 /// What a device puts up with and goes on from: its outputs `warnings`, a count, and `warning_id`,
@@ -86,8 +86,8 @@ struct ErrorFlag {
 struct WarningCount {
     const std::int64_t* count = nullptr;
     const std::int64_t* id = nullptr;
-    std::span<const std::string_view> names = {};  ///< of id
-    std::string block = {};                        ///< `'x' (pto)`
+    ValueNames names = {};   ///< of id
+    std::string block = {};  ///< `'x' (pto)`
 };
 
 /// A block that lives between scans, see runtime/model/device.hpp. Its memory is not published with

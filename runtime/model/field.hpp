@@ -39,8 +39,7 @@ struct Field {
     Direction direction = Direction::parameter;
     Type type = Type::real;
     std::size_t offset = 0;  ///< of the member in the block's struct
-    std::span<const std::string_view> names =
-        {};  ///< of an enumeration, in the order of its values
+    ValueNames names = {};   ///< of an enumeration
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
     bool minimum_excluded = false;
@@ -87,6 +86,7 @@ struct Field {
     }
 
     bool admits(const Value& value) const {
+        if (type == Type::enumeration) return names.takes(std::get<std::int64_t>(value));
         const auto from_minimum = compare(value, minimum), from_maximum = compare(value, maximum);
         return (minimum_excluded ? from_minimum > 0 : from_minimum >= 0) &&
                (maximum_excluded ? from_maximum < 0 : from_maximum <= 0);

@@ -16,9 +16,7 @@ bool is_valid(const Field& field, const std::byte* place, const KeptState& machi
     if (field.direction == Direction::in_out)
         return field.refers.starts_with("VAR_IN_OUT ") ||
                is_reference(field, read<std::int64_t>(place), machine);
-    if (field.type != Type::enumeration) return true;
-    const auto number = read<std::int64_t>(place);
-    return number >= 0 && number < static_cast<std::int64_t>(field.names.size());
+    return field.type != Type::enumeration || field.names.takes(read<std::int64_t>(place));
 }
 
 }  // namespace

@@ -1,26 +1,57 @@
 #include "runtime/model/literal.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft {
 
 namespace {
 
+/// `Run` of `E_State.Run` and `E_State#Run`.
+std::string_view name_in(std::string_view text, std::string_view type) {
+    const std::size_t end = text.find_last_of(".#");
+    const bool is_its = end != text.npos && same_letters(text.substr(0, end), type);
+    return is_its ? text.substr(end + 1) : text;
+}
+
+std::optional<std::int64_t> read_number(std::string_view text) {
+    std::int64_t number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, number);
+    if (error != std::errc{} || stop != end) return {};
+    return number;
+}
+
+/// `Idle (0), Run (10)`
+std::string list_of(const ValueNames& names) {
+    std::string text;
+    std::size_t place = 0;
+    for (const std::string_view name : names) {
+        text += fmt::format("{}{} ({})", place == 0 ? "" : ", ", name, names.number(place));
+        ++place;
+    }
+    return text;
+}
+
 std::optional<Value> read_name(const Reader& read, const Node& node, const Field& field) {
     if (!read.expect_scalar(node, "a name")) return {};
-    const auto it = std::ranges::find(field.names, node.text);
-    if (it != field.names.end()) return Value(static_cast<std::int64_t>(it - field.names.begin()));
+    if (const auto number = field.names.find(name_in(node.text, field.names.type())))
+        return Value(*number);
+    const auto number = read_number(node.text);
+    const bool is_number = number && field.names.may_be_written_as_numbers();
+    if (is_number && field.names.takes(*number)) return Value(*number);
     std::vector<std::string> names(field.names.begin(), field.names.end());
     std::erase(names, "");
     read.fail(code::no_allowed_name, node,
               fmt::format("'{}' is not a value of '{}'", node.text, field.name),
-              suggest(node.text, names));
+              is_number ? "its values are " + list_of(field.names) : suggest(node.text, names));
     return {};
 }
 

@@ -60,12 +60,14 @@ std::string format(const Value& value) {
     return fmt::format("{}", *whole(value));
 }
 
-std::string describe(const Value& value, Type type, std::span<const std::string_view> names,
+std::string describe(const Value& value, Type type, const ValueNames& names,
                      std::string_view unit) {
     if (type == Type::boolean) return std::get<bool>(value) ? "true" : "false";
     if (type == Type::enumeration) {
-        const auto index = static_cast<std::size_t>(std::get<std::int64_t>(value));
-        return index < names.size() ? std::string(names[index]) : format(value);
+        const auto number = std::get<std::int64_t>(value);
+        const std::string_view name = names.of(number);
+        const bool is_of_no_letters = !names.may_be_written_as_numbers() && names.takes(number);
+        return name.empty() && !is_of_no_letters ? format(value) : std::string(name);
     }
     std::string text = format(value);
     if (!unit.empty()) text.append(" ").append(unit);

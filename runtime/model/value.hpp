@@ -5,16 +5,16 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
 
+#include "runtime/model/value_names.hpp"
 #include "runtime/source/wide.hpp"
 
 namespace lineshaft {
 
-/// The kinds of data a signal carries. An enumeration is stored as its index, 64 bits wide. An
+/// The kinds of data a signal carries. An enumeration is stored as its number, 64 bits wide. An
 /// unsigned integer has the values from 2^63 on that no other integer has (ULINT, LWORD); those who
 /// look from outside take both for integers.
 enum class Type : std::uint8_t { boolean, integer, real, enumeration, unsigned_integer };
@@ -59,9 +59,9 @@ std::optional<Value> whole_value(Wide number, Type type);
 /// As a trace has it: boolean 0 or 1, enumeration its number, shortest round-trip real.
 std::string format(const Value& value);
 
-/// As a person reads it: `true`, an enumeration's name, a number with its unit.
-std::string describe(const Value& value, Type type, std::span<const std::string_view> names,
-                     std::string_view unit);
+/// As a person reads it: `true`, an enumeration's name or the number that has none, a number with
+/// its unit.
+std::string describe(const Value& value, Type type, const ValueNames& names, std::string_view unit);
 
 /// For formulas: true is 1.
 double as_real(const Value& value);

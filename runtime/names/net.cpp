@@ -34,7 +34,7 @@ std::string name_of_listed(const Net& net, std::string_view owner, std::string_v
 
 }  // namespace
 
-std::string kind(Type type, std::span<const std::string_view> names) {
+std::string kind(Type type, const ValueNames& names) {
     return type == Type::enumeration ? fmt::format("one of {}", fmt::join(names, ", "))
                                      : std::string(name_of(type));
 }

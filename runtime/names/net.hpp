@@ -143,6 +143,6 @@ struct Net {
 };
 
 /// `real`, or an enumeration's names.
-std::string kind(Type type, std::span<const std::string_view> names);
+std::string kind(Type type, const ValueNames& names);
 
 }  // namespace lineshaft

@@ -157,9 +157,7 @@ bool set_cell(const Resolving& to, const Instance& block, const Field& column,
     const bool real = column.type == Type::real;
     const bool whole = value == std::trunc(value) && std::abs(value) < 9e15;
     const Value cell = real ? Value(value) : Value(whole ? static_cast<std::int64_t>(value) : -1);
-    const bool known = real || (whole && (column.type != Type::enumeration ||
-                                          (value >= 0 && value < double(column.names.size()))));
-    if (!unit || !unit->same_dimension(due) || !known || !column.admits(cell)) {
+    if (!unit || !unit->same_dimension(due) || !(real || whole) || !column.admits(cell)) {
         to.read.fail(
             code::cell_is_no_number, file,
             fmt::format("'{}' in line {} of '{}' is not a value of '{}'",

@@ -115,7 +115,7 @@ bool check_type(const Resolving& to, const Assignment& wire, const Signal& sourc
     const bool narrows = source.type == Type::real && is_integer(field->type);
     const bool fits = source.type == field->type ||
                       (is_integer(source.type) && (is_integer(field->type) || is_real));
-    if (fits && std::ranges::equal(source.names, field->names)) return true;
+    if (fits && source.names.fits(field->names)) return true;
     to.read.fail(
         code::wire_between_types, *value,
         fmt::format("'{}' is {}, '{}' takes {}", source.name, kind(source.type, source.names),

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -20,9 +19,9 @@ struct Signal {
     std::string name;  ///< `shaft.position`, `inputs.start`
     Type type = Type::real;
     std::string unit;
-    std::span<const std::string_view> names;  ///< of an enumeration
-    const std::byte* slot = nullptr;          ///< null until it is laid out
-    int task = -1;  ///< index of the task that writes it; -1: from outside
+    ValueNames names;                 ///< of an enumeration
+    const std::byte* slot = nullptr;  ///< null until it is laid out
+    int task = -1;                    ///< index of the task that writes it; -1: from outside
     Port port = {};
 
     Value value() const { return load(type, slot); }

@@ -31,14 +31,30 @@ bool may_be_written(ModbusTable table) {
     return table == ModbusTable::coils || table == ModbusTable::holding_registers;
 }
 
-std::string_view usual_type(Type type) {
-    return type == Type::real ? "real32" : is_integer(type) ? "int32" : "uint16";
+/// The smallest that has an enumeration's numbers; one register where these are not negative,
+/// without a sign.
+std::string_view usual_type(const ValueNames& names) {
+    std::int64_t least = 0, most = 0;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        least = std::min(least, names.number(i));
+        most = std::max(most, names.number(i));
+    }
+    const auto has = [&]<class T>(T) { return std::in_range<T>(least) && std::in_range<T>(most); };
+    if (has(std::uint16_t{})) return "uint16";
+    if (has(std::int16_t{})) return "int16";
+    if (has(std::uint32_t{})) return "uint32";
+    return has(std::int32_t{}) ? "int32" : "int64";
+}
+
+std::string_view usual_type(const Signal& signal) {
+    if (signal.type == Type::enumeration) return usual_type(signal.names);
+    return signal.type == Type::real ? "real32" : is_integer(signal.type) ? "int32" : "uint16";
 }
 
 /// Of an address of the process image a type of its size.
 std::string_view usual_type(const Target& target) {
     const auto address = read_address(target.signal.name, AddressCount::words);
-    if (!address || !is_integer(target.signal.type)) return usual_type(target.signal.type);
+    if (!address || !is_integer(target.signal.type)) return usual_type(target.signal);
     const bool has_sign = target.field.minimum < 0;
     if (address->bits == 64) return has_sign ? "int64" : "uint64";
     if (address->bits == 32) return has_sign ? "int32" : "uint32";

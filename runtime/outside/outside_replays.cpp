@@ -22,7 +22,8 @@ bool fits(const CsvColumn& column, bool is_typed, const Field& input) {
     const bool fits = column.type == input.type ||
                       (column.type == Type::integer &&
                        (input.type == Type::real || input.type == Type::unsigned_integer));
-    return fits && std::ranges::equal(column.names, input.names);
+    return fits && std::ranges::equal(column.names, input.names) &&
+           column.numbers == input.names.odd_numbers();
 }
 
 std::optional<Value> as_whole(double value, Type type) {
@@ -45,7 +46,7 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
             return among(2) && as_whole(value, input.type) ? std::optional<Value>(value == 1)
                                                            : std::nullopt;
         case Type::enumeration:
-            return among(input.names.size()) ? as_whole(value, input.type) : std::nullopt;
+            return as_whole(value, input.type);
         case Type::integer:
         case Type::unsigned_integer:
             return as_whole(same_unit ? value : convert(value, from, to), input.type);
@@ -130,10 +131,10 @@ std::vector<Replay::Point> replay_points(Connecting& to, const Target& input, co
     const bool is_typed = table.metadata && table.metadata->find(column.title);
     const std::vector<std::string_view> names(column.names.begin(), column.names.end());
     if (!fits(column, is_typed, input.field)) {
-        to.read.fail(
-            code::wire_between_types, name,
-            fmt::format("column '{}' is {}, '{}' takes {}", name.text, kind(column.type, names),
-                        input.signal.name, kind(input.field.type, input.field.names)));
+        to.read.fail(code::wire_between_types, name,
+                     fmt::format("column '{}' is {}, '{}' takes {}", name.text,
+                                 kind(column.type, std::span(names)), input.signal.name,
+                                 kind(input.field.type, input.field.names)));
         return {};
     }
     const auto unit = column_unit(to, column, input.signal.unit, name);

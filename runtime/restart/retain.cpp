@@ -69,10 +69,7 @@ std::optional<Value> value_of(const Json& json, Type type) {
 
 /// Among an enumeration's, and within the limits of the field.
 bool is_admitted(const Value& value, const Signal& signal, const Machine& machine) {
-    if (signal.type == Type::enumeration) {
-        const auto number = std::get<std::int64_t>(value);
-        return number >= 0 && number < std::ssize(signal.names);
-    }
+    if (signal.type == Type::enumeration) return signal.names.takes(std::get<std::int64_t>(value));
     if (signal.port.instance < 0 || !is_integer(signal.type)) return true;
     const BlockPlace& block = machine.blocks[static_cast<std::size_t>(signal.port.instance)];
     return block.type->fields[static_cast<std::size_t>(signal.port.field)].admits(value);

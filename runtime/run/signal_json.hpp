@@ -9,7 +9,8 @@ namespace lineshaft {
 /// A real number for JSON: null when it is not finite.
 nlohmann::ordered_json json_number(double value);
 
-/// A signal's value: true or false, an enumeration's name, a number; null if it is not finite.
+/// A signal's value: true or false, an enumeration's name or a number that has none, a number; null
+/// if it is not finite.
 nlohmann::ordered_json to_json(const Signal& signal, const Value& value);
 
 }  // namespace lineshaft

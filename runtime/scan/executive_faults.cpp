@@ -13,8 +13,7 @@ constexpr std::int64_t most_starts_at_once = 1000;
 
 /// A loop of own code was ended after as many passes as a scan may have.
 bool is_endless(const ErrorFlag& flag) {
-    const auto id = flag.error_id ? static_cast<std::size_t>(*flag.error_id) : flag.names.size();
-    return id < flag.names.size() && flag.names[id] == "no_end";
+    return flag.error_id && flag.names.of(*flag.error_id) == "no_end";
 }
 
 }  // namespace
@@ -120,9 +119,9 @@ void Executive::report_errors(int index) {
         if (!*flag.error || (before && !is_endless(flag))) continue;
         std::string text;
         if (flag.error_id) {
-            const auto id = static_cast<std::size_t>(*flag.error_id);
             text = fmt::format(" {}", *flag.error_id);
-            if (id < flag.names.size()) text += fmt::format(" ({})", flag.names[id]);
+            const std::string_view name = flag.names.of(*flag.error_id);
+            if (!name.empty()) text += fmt::format(" ({})", name);
         }
         const Scan& scan = state(index).scan;
         const std::string place = why(flag, index);
@@ -153,8 +152,7 @@ void Executive::report_warnings(const DeviceCall& device, int index) {
     warned.count = *warnings.count;
     if (!events_) return;
     tell(EventKind::block_warning, index,
-         fmt::format("block {} warns of {}{}", warnings.block,
-                     warnings.names[static_cast<std::size_t>(*warnings.id)],
+         fmt::format("block {} warns of {}{}", warnings.block, warnings.names.of(*warnings.id),
                      more > 1 ? fmt::format(", the last of {} warnings", more) : ""));
 }
 
@@ -164,10 +162,10 @@ std::vector<std::string> Executive::warnings() const {
         const Warned& warned = warned_[i];
         const WarningCount& warnings = machine_.devices[i].warnings;
         if (warned.count == 0) continue;
-        texts.push_back(fmt::format(
-            "block {} warned {}, first of {} at {}", warnings.block,
-            warned.count == 1 ? "once" : fmt::format("{} times", warned.count),
-            warnings.names[static_cast<std::size_t>(warned.id)], format_time(warned.first)));
+        texts.push_back(
+            fmt::format("block {} warned {}, first of {} at {}", warnings.block,
+                        warned.count == 1 ? "once" : fmt::format("{} times", warned.count),
+                        warnings.names.of(warned.id), format_time(warned.first)));
     }
     return texts;
 }

@@ -166,10 +166,9 @@ void Executive::restore_memory(StateReader& in, KeptMemory& memory, const std::b
         std::byte* const place = machine_.live(signal.port);
         const std::byte* const value = kept + (place - first);
         in.require(signal.type != Type::boolean || read<unsigned char>(value) <= 1, signal.name);
-        const auto names = static_cast<std::int64_t>(signal.names.size());
-        in.require(signal.type != Type::enumeration ||
-                       (read<std::int64_t>(value) >= 0 && read<std::int64_t>(value) < names),
-                   signal.name);
+        in.require(
+            signal.type != Type::enumeration || signal.names.takes(read<std::int64_t>(value)),
+            signal.name);
         if (in.ok()) std::copy_n(value, size_of(signal.type), place);
     }
     for (const BlockPlace& block : machine_.blocks) {
@@ -217,9 +216,8 @@ void Executive::restore_states(StateReader& in) {
     in.get(error_levels_);
     in.get(warned_);
     for (std::size_t i = 0; i < warned_.size(); ++i) {
-        const auto names =
-            std::max<std::int64_t>(std::ssize(machine_.devices[i].warnings.names), 1);
-        in.require(is_count(warned_[i].count) && warned_[i].id >= 0 && warned_[i].id < names,
+        const ValueNames& names = machine_.devices[i].warnings.names;
+        in.require(is_count(warned_[i].count) && (warned_[i].id == 0 || names.takes(warned_[i].id)),
                    "a count of warnings");
     }
     std::uint64_t running = 0;

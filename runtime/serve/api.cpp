@@ -144,6 +144,7 @@ std::vector<Route> make_routes() {
                          {"type", of_type("string", "boolean, integer, real or enumeration")},
                          {"unit", of_type("string")},
                          {"names", list_of(of_type("string", "of an enumeration"))},
+                         {"numbers", list_of(of_type("integer", "of the names, where they are not 0, 1, 2, ..."))},
                          {"settable", of_type("boolean", "an input that no wire feeds")},
                          {"traced", of_type("boolean", "the program records it")}})),
          &Api::signals},
@@ -283,7 +284,9 @@ ApiReply Api::signals(const ApiRequest&) {
                         {"unit", signal.unit},
                         {"settable", desk_.is_settable(signal.name)},
                         {"traced", is_traced(loaded_.linked, signal)}});
-        if (!signal.names.empty()) list.back()["names"] = signal.names;
+        if (!signal.names.empty()) list.back()["names"] = signal.names.list();
+        if (const auto numbers = signal.names.odd_numbers(); !numbers.empty())
+            list.back()["numbers"] = numbers;
     }
     return {200, std::move(list)};
 }

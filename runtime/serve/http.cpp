@@ -29,11 +29,14 @@ std::string event(const char* name, const Json& data) {
 
 Json heading(const Stream& stream) {
     Json signals = Json::array();
-    for (const Signal* signal : stream.signals())
+    for (const Signal* signal : stream.signals()) {
         signals.push_back({{"name", signal->name},
                            {"unit", signal->unit},
                            {"type", name_of(signal->type)},
-                           {"names", signal->names}});
+                           {"names", signal->names.list()}});
+        if (const auto numbers = signal->names.odd_numbers(); !numbers.empty())
+            signals.back()["numbers"] = numbers;
+    }
     return signals;
 }
 

@@ -88,11 +88,10 @@ std::optional<Value> value_of(const MappedSignal& mapped, double number) {
     if (signal.type == Type::real) return number;
     if (signal.type == Type::boolean)
         return number == 0 || number == 1 ? std::optional<Value>(number == 1) : std::nullopt;
-    const bool is_named = signal.type == Type::enumeration;
-    const double limit = is_named ? static_cast<double>(signal.names.size()) : 0x1p64;
-    const double least = is_named ? 0 : -0x1p63;
-    if (number != std::trunc(number) || number < least || number >= limit) return {};
-    return whole_value(static_cast<Wide>(number), signal.type);
+    if (number != std::trunc(number) || number < -0x1p63 || number >= 0x1p64) return {};
+    const auto value = whole_value(static_cast<Wide>(number), signal.type);
+    const bool is_named = value && signal.type == Type::enumeration;
+    return is_named && !signal.names.takes(std::get<std::int64_t>(*value)) ? std::nullopt : value;
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ void check_columns(const CsvTable& a, const CsvTable& b, const auto& fail) {
         const CsvColumn &x = a.columns[i], &y = b.columns[i];
         if (x.unit != y.unit)
             fail(fmt::format("column '{}' is in '{}' and in '{}'", x.name, y.unit, x.unit), "");
-        if (x.type != y.type || x.names != y.names)
+        if (x.type != y.type || x.names != y.names || x.numbers != y.numbers)
             fail(fmt::format("column '{}' is {} and {}", x.name, name_of(y.type), name_of(x.type)),
                  "");
     }
@@ -138,7 +138,8 @@ void keep_common(CsvTable& a, CsvTable& b) {
     std::vector<CsvColumn> ours, theirs;
     for (CsvColumn& x : a.columns) {
         const auto y = std::ranges::find(b.columns, x.name, &CsvColumn::name);
-        if (y == b.columns.end() || y->unit != x.unit || y->type != x.type || y->names != x.names)
+        if (y == b.columns.end() || y->unit != x.unit || y->type != x.type || y->names != x.names ||
+            y->numbers != x.numbers)
             continue;
         ours.push_back(std::move(x));
         theirs.push_back(std::move(*y));

@@ -30,7 +30,9 @@ Json csvw_column(const Signal& signal, const std::string& title) {
     if (title != signal.name) column["lineshaft:signal"] = signal.name;
     if (signal.type == Type::boolean) column["datatype"] = {{"base", "boolean"}, {"format", "1|0"}};
     if (!signal.unit.empty()) column["unit"] = signal.unit;
-    if (!signal.names.empty()) column["values"] = signal.names;
+    if (!signal.names.empty()) column["values"] = signal.names.list();
+    if (const auto numbers = signal.names.odd_numbers(); !numbers.empty())
+        column["lineshaft:numbers"] = numbers;
     return column;
 }
 

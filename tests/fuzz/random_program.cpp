@@ -198,7 +198,7 @@ std::string Generator::wire(const Field& field, const std::string& unit) {
     std::vector<const Source*> fitting;
     for (const Source& source : sources_)
         if (source.type == field.type && source.unit == unit &&
-            (field.type != Type::enumeration || source.field->names.data() == field.names.data()))
+            (field.type != Type::enumeration || source.field->names.fits(field.names)))
             fitting.push_back(&source);
     return fitting.empty() ? "" : choices_.one_of(fitting)->name;
 }

@@ -988,13 +988,7 @@ class CWriter {
             return whole;
         }
         if (&from == &to) return x;
-        if (from.kind == Kind::enumeration && !from.counted) {
-            std::string numbers;
-            for (const std::int64_t number : from.numbers) numbers += fmt::format("{}, ", number);
-            const std::string table = new_name();
-            put("static const i64 {}[] = {{{}}};", table, numbers);
-            return convert(made("i64", fmt::format("{}[{}]", table, x)), lint_type, to);
-        }
+        if (from.kind == Kind::enumeration && !from.counted) return convert(x, lint_type, to);
         if (to.kind == Kind::enumeration) {
             const std::string whole = from.is_real() ? rounded(lint_type, x) : x;
             check_range(whole, 0, static_cast<std::int64_t>(to.values.size()) - 1);

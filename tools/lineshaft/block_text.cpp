@@ -112,7 +112,7 @@ std::string example_value(const BlockType& type, const Fresh& fresh, const Field
     if (is_reference(field)) return lower(field.name).starts_with("master") ? "line" : "x";
     if (field.name == "CamTableID") return "my_cam_table_select.CamTableID";
     if (field.type == Type::boolean) return "inputs.go";
-    if (field.type == Type::enumeration) return std::string(written(field.names[0]));
+    if (field.type == Type::enumeration) return std::string(written(field.names.front()));
     return example_number(type, fresh, field.unit, field.name == "low" ? "0" : "1");
 }
 
@@ -156,7 +156,7 @@ Json field_json(const Field& field, const Fresh& fresh) {
     out["doc"] = field.doc;
     if (!is_reference(field)) out["default"] = fresh.text(field);
     out["required"] = field.required;
-    if (!field.names.empty()) out["values"] = field.names;
+    if (!field.names.empty()) out["values"] = field.names.list();
     add_limits(out, field);
     return out;
 }
@@ -220,7 +220,7 @@ Json block_json(const BlockType& type) {
         auto columns = Json::array();
         for (const Field& c : t.columns) {
             columns.push_back({{"name", c.name}, {"unit", c.unit}, {"doc", c.doc}});
-            if (!c.names.empty()) columns.back()["values"] = c.names;
+            if (!c.names.empty()) columns.back()["values"] = c.names.list();
             add_limits(columns.back(), c);
         }
         out["tables"].push_back(

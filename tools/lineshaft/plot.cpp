@@ -27,7 +27,8 @@ struct PlotCommand {
 struct PlotGroup {
     std::string unit;
     Type type = Type::real;
-    std::vector<std::string> names;  ///< of an enumeration
+    std::vector<std::string> names;     ///< of an enumeration
+    std::vector<std::int64_t> numbers;  ///< of the names; empty: 0, 1, 2, ...
     std::vector<std::string> signals;
 };
 
@@ -42,7 +43,8 @@ std::vector<PlotGroup> group_signals(const ReportRun& run) {
         };
         auto group = std::ranges::find_if(groups, fits);
         if (group == groups.end())
-            group = groups.insert(group, {signal->unit, signal->type, signal->names, {}});
+            group = groups.insert(group,
+                                  {signal->unit, signal->type, signal->names, signal->numbers, {}});
         group->signals.push_back(signal->name);
     }
     std::stable_partition(groups.begin(), groups.end(),
@@ -158,7 +160,8 @@ void Script::axis(const PlotGroup& group) {
         tics += fmt::format("{}{} {}", i == 0 ? "" : ", ",
                             gnuplot_text(strips ? group.signals[i] : group.names[i]),
                             strips ? static_cast<double>(group.signals.size() - 1 - i) + 0.5
-                                   : static_cast<double>(i));
+                            : group.numbers.empty() ? static_cast<double>(i)
+                                                    : static_cast<double>(group.numbers[i]));
     line("set ytics {}", tics.empty() ? "autofreq" : "(" + tics + ")");
     line("set ylabel {}", gnuplot_text(group.unit.empty() ? "" : "[" + group.unit + "]"));
     const auto constant = constant_of(group);

@@ -230,6 +230,7 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
                     {"type", name_of(column->type)},
                     {"data", packed_signal(column->values, bytes)}};
         if (!column->names.empty()) signal["names"] = column->names;
+        if (!column->numbers.empty()) signal["numbers"] = column->numbers;
         signals.push_back(std::move(signal));
     }
     const auto& metadata = run.table.metadata;

@@ -54,7 +54,8 @@ class Fault(Error):
 
 
 class Trace:
-    """The columns of one trace by name, `time` in seconds. Enumerations are the names of their values."""
+    """The columns of one trace by name, `time` in seconds. Enumerations are the names of their values, or a number
+    that has none."""
 
     def __init__(self, columns, units):
         self.columns, self.units = columns, units
@@ -165,7 +166,9 @@ def _column(described, cells):
     if isinstance(kind, dict):
         return _array([cell == "1" for cell in cells], bool)
     if "values" in described:
-        return _array([described["values"][int(cell)] for cell in cells], str)
+        numbers = described.get("lineshaft:numbers", range(len(described["values"])))
+        names = dict(reversed(list(zip(numbers, described["values"]))))
+        return _array([names.get(int(cell), cell) for cell in cells], str)
     if kind == "integer":
         whole = [int(cell) for cell in cells]
         return _array(whole, "uint64" if max(whole, default=0) >= 2**63 else "int64")

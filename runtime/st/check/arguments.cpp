@@ -38,11 +38,10 @@ bool is_lent(const Expression& e) {
 }
 
 /// What a slot has of a variable of CODESYS' is what it has of that number: a subrange's value, and
-/// an enumeration's where its values are counted from 0 on.
+/// an enumeration's, of one that is strict where its values are counted from 0 on.
 bool is_kept_as(const Type& given, const Type& number) {
-    if (given.is_unchecked) return same_type(*given.base, number);
-    return given.kind == Kind::enumeration && given.has_numbers && given.counted &&
-           same_type(given.base->plain(), number);
+    const bool counts = given.kind == Kind::enumeration && given.has_numbers && given.counted;
+    return (given.is_unchecked || counts) && same_type(given.base->plain(), number);
 }
 
 /// An instance of another block that extends that of the parameter.

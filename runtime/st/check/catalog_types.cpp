@@ -31,7 +31,7 @@ NamedKind find_kind(const Catalog& catalog, std::string_view name) {
     if (!types) return {};
     const std::string_view* type = find_called(types->names, name.substr(end + 1));
     if (!type) return {};
-    return {kind, types, static_cast<std::size_t>(type - types->names.data())};
+    return {kind, types, static_cast<std::size_t>(type - &*types->names.begin())};
 }
 
 /// Enumerations that the standards make a WORD.

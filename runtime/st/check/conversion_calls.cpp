@@ -98,14 +98,6 @@ bool is_conversion(const Type& from, const Type& to, const Dialect& dialect) {
     return to.is_scalar() || to.kind == Kind::text;
 }
 
-/// Null: the number is that of no value.
-const std::string* name_of_value(const Expression& constant) {
-    const Type& type = *constant.type;
-    for (std::size_t i = 0; i < type.values.size(); ++i)
-        if (constant.constant.integer == type.kept(i)) return &type.values[i];
-    return nullptr;
-}
-
 }  // namespace
 
 std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name) {
@@ -168,7 +160,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
                                   target->name),
                       "write a CASE");
     if (from.texts_are_names && target->kind == Kind::text && is_constant(*value))
-        if (const std::string* text = name_of_value(*value))
+        if (const std::string* text = from.name_of(value->constant.integer))
             return become(c, e, *target, {.text = *text});
     const Place place = e->place;
     const Type& bits = from.kind == Kind::bits ? from : *target;

@@ -110,14 +110,16 @@ bool coerce_to_catalog(Checking& c, Expression*& e, const Type& to) {
     const bool are_both = from.has_numbers && to.kind == Kind::enumeration && !to.has_numbers;
     if (!are_both) return false;
     if (is_constant(*e)) {
-        const std::string& name = from.values[static_cast<std::size_t>(e->constant.integer)];
-        const auto is_meant = [&](auto& value) { return is_short_for(name, value); };
+        const std::string* name = from.name_of(e->constant.integer);
+        const auto is_meant = [&](auto& value) { return name && is_short_for(*name, value); };
         const auto it = std::ranges::find_if(to.values, is_meant);
         return std::ranges::count_if(to.values, is_meant) == 1 &&
                become(c, e, to, {.integer = it - to.values.begin()});
     }
-    return from.values.size() <= to.values.size() &&
-           std::equal(from.values.begin(), from.values.end(), to.values.begin(), is_short_for);
+    const bool is_same_list =
+        from.values.size() <= to.values.size() && has_table_for(from) &&
+        std::equal(from.values.begin(), from.values.end(), to.values.begin(), is_short_for);
+    return is_same_list && convert(c, e, to);
 }
 
 /// The one structure is the other's base, or a base of that.
@@ -215,9 +217,7 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
     if (from.kind == Kind::text || to.kind == Kind::text) return false;
     if (from.kind == Kind::enumeration) {
         if ((!to.is_integer() && !to.is_bits()) || to.is_subrange) return false;
-        const auto value = static_cast<std::size_t>(e->constant.integer);
-        const Wide number = from.counted ? e->constant.integer : from.numbers[value];
-        return become(c, e, to, {.integer = wrapped(to, number)});
+        return become(c, e, to, {.integer = wrapped(to, e->constant.integer)});
     }
     const bool keeps_bits = to.is_real() && from.is_bits();
     if (keeps_bits || from.is_date() || to.is_date()) return false;
@@ -370,7 +370,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         return convert(c, e, to);
     }
     if (from.kind == Kind::enumeration && to.kind == Kind::enumeration && from.name == to.name &&
-        from.values == to.values)
+        from.values == to.values && from.numbers == to.numbers)
         return true;
     if (is_of_base(from, to) && become_base(c, e, to)) return true;
     if (fits_as_constant(*e, to)) return become(c, e, to, {.integer = e->constant.integer});

@@ -23,6 +23,8 @@ bool counts_bits(const Type& from, const Type& to, const Place& place);
 bool is_literal_character(const Expression& e);
 /// As it is written: of a pin of the catalogue, `MC_Home.HomingMode`, without that.
 std::string first_value(const Checking& c, const Type& type);
+/// A conversion of numbers to it has a table of those between its least and its most.
+bool has_table_for(const Type& enumeration);
 /// Siemens gives a number where PLCopen has a name: `Direction := 1`.
 bool coerce_number(Checking& c, Expression*& e, const Type& to);
 /// An enumeration's value and its number stand for each other where the one is known to be one of

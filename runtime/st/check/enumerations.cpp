@@ -6,45 +6,18 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Conversions have a table of the numbers between its least and its most.
-bool has_table_for(const Type& type, std::int64_t number) {
-    constexpr std::int64_t most_numbers = 4096;
-    const auto [least, most] = std::ranges::minmax(type.numbers);
-    return std::max(most, number) - std::min(least, number) < most_numbers;
-}
-
-/// A value more of an enumeration, which is called by its number.
-void add_value(Checking& c, const Type& to, std::int64_t number) {
-    const auto type = std::ranges::find_if(c.checked.types, [&](Type& t) { return &t == &to; });
-    if (type == c.checked.types.end()) return;
-    type->counted = false;
-    type->values.push_back(to_string(number));
-    type->numbers.push_back(number);
-}
-
-/// A number that no value has, which CODESYS lets a variable have: one more where something begins
-/// with it, and elsewhere a fault where it is reached.
-bool convert_to_none(Checking& c, Expression*& e, const Type& to) {
-    const std::string number = to_string(e->constant.integer);
-    const std::string message = fmt::format("no value of {} is {}", to.name, number);
-    const auto value = static_cast<std::int64_t>(e->constant.integer);
-    const bool is_beginning = c.beginning.variable || !c.routine;
-    if (is_beginning && has_table_for(to, value)) add_value(c, to, value);
-    const auto it = std::ranges::find(to.numbers, value);
-    if (it != to.numbers.end()) {
-        c.warn(code::value_out_of_range, e->place, message + ", and it is kept all the same",
-               "declare a value for it");
-        return become(c, e, to, {.integer = it - to.numbers.begin()});
-    }
-    if (is_beginning) {
+/// A number that no value has, which CODESYS lets a variable have.
+bool take_nameless(Checking& c, Expression*& e, const Type& to) {
+    const Wide number = e->constant.integer;
+    const std::string message = fmt::format("no value of {} is {}", to.name, to_string(number));
+    if (number < smallest(to.base->plain()) || number > largest(to.base->plain())) {
         c.fail(code::value_out_of_range, e->place, message,
-               "declare a value for it, or the variable as an INT");
-        return become(c, e, to, {});
+               fmt::format("its variables are of {}", to.base->name));
+        return become(c, e, to, to.initial);
     }
-    c.warn(code::value_out_of_range, e->place,
-           message + ", and a fault comes where that is assigned", "declare a value for it");
-    e = make_converted(c, e, to);
-    return true;
+    c.warn(code::value_out_of_range, e->place, message + ", and it is kept all the same",
+           "declare a value for it");
+    return become(c, e, to, {.integer = number});
 }
 
 }  // namespace
@@ -53,6 +26,12 @@ std::string first_value(const Checking& c, const Type& type) {
     const std::string& value = type.values.front();
     const bool is_of_pin = c.catalog.find(type.name.substr(0, type.name.find('.'))) != nullptr;
     return is_of_pin ? value : fmt::format("{}#{}", type.name, value);
+}
+
+bool has_table_for(const Type& type) {
+    constexpr std::int64_t most_numbers = 4096;
+    const auto [least, most] = std::ranges::minmax(type.numbers);
+    return Wide{most} - least < most_numbers;
 }
 
 bool coerce_number(Checking& c, Expression*& e, const Type& to) {
@@ -75,9 +54,9 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         const auto holds = [&](std::int64_t number) {
             return number >= smallest(to) && number <= largest(to);
         };
-        const bool fits = is_constant(*e)
-                              ? holds(from.numbers[static_cast<std::size_t>(e->constant.integer)])
-                              : std::ranges::all_of(from.numbers, holds);
+        const bool fits = is_constant(*e) ? e->constant.integer >= smallest(to) &&
+                                                e->constant.integer <= largest(to)
+                                          : std::ranges::all_of(from.numbers, holds);
         if (fits) convert(c, e, to);
         return fits;
     }
@@ -92,14 +71,10 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         return true;
     }
     if (!to.has_numbers || !from.is_integer()) return false;
-    if (!is_constant(*e)) {
-        const bool fits = are_numbers && has_table_for(to, to.numbers.front());
-        if (fits) convert(c, e, to);
-        return fits;
-    }
-    const auto it = std::ranges::find(to.numbers, e->constant.integer);
-    if (it == to.numbers.end()) return are_numbers && convert_to_none(c, e, to);
-    return become(c, e, to, {.integer = it - to.numbers.begin()});
+    if (!is_constant(*e))
+        return are_numbers && (to.is_unchecked || has_table_for(to)) && convert(c, e, to);
+    if (!to.name_of(e->constant.integer)) return are_numbers && take_nameless(c, e, to);
+    return become(c, e, to, {.integer = e->constant.integer});
 }
 
 }  // namespace lineshaft::st

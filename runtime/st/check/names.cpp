@@ -234,7 +234,7 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
 }
 
 const Type* become_value(Checking& c, Expression*& e, const Type& type, std::ptrdiff_t index) {
-    return become(c, e, type, {.integer = type.kept(static_cast<std::size_t>(index))});
+    return become(c, e, type, {.integer = type.numbers[static_cast<std::size_t>(index)]});
 }
 
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {

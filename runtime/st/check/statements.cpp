@@ -223,8 +223,7 @@ void rewrite_case_of_texts(Checking& c, Statement*& s) {
 bool is_of_no_value(Checking& c, Expression*& label, const Type& type) {
     const bool is_literal = label && label->kind == E::constant && !label->type;
     const Type* given = is_literal ? check(c, label, &type) : nullptr;
-    return given && given->kind == Kind::any_integer &&
-           std::ranges::find(type.numbers, label->constant.integer) == type.numbers.end();
+    return given && given->kind == Kind::any_integer && !type.name_of(label->constant.integer);
 }
 
 /// Where a label is such a number, all of them are numbers.
@@ -293,8 +292,8 @@ bool narrows(Checking& c, Expression*& first, const Type& type) {
     return convert(c, first, type);
 }
 
-/// Over the values of an enumeration: `FOR number := first TO last DO target := number; ...`. One
-/// that no value has is the fault of that assignment.
+/// Over the values of an enumeration: `FOR number := first TO last DO target := number; ...`. What
+/// no value of one that is strict has is the fault of that assignment.
 void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
     Variable& number = c.make_variable(*c.routine, slot->target->token, "FOR", &lint_type);
     Statement* loop = make_with(c, *slot, slot->value);

@@ -156,7 +156,7 @@ void become_named_values(Type& type, const Type& base) {
     type.bits = base.bits;
     type.is_signed = base.is_signed;
     type.base = &base;
-    type.has_numbers = false;
+    type.has_numbers = type.is_unchecked = false;
     type.has_named_values = true;
     type.initial.integer = type.numbers.front();
 }
@@ -193,9 +193,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
         type.values.emplace_back(value.name.text);
         type.numbers.push_back(number++);
     }
-    const auto zero = std::ranges::find(type.numbers, 0);
-    if (text.place.dialect().enumerations_begin_at_zero && zero != type.numbers.end())
-        type.initial.integer = zero - type.numbers.begin();
+    const bool is_from_zero = text.place.dialect().enumerations_begin_at_zero && type.name_of(0);
+    if (!is_from_zero && !type.numbers.empty()) type.initial.integer = type.numbers.front();
+    type.is_unchecked = text.place.dialect().enumerations_are_numbers && !text.is_strict;
     const bool is_named_first = has_base && text.name.place.begin == text.place.begin;
     if (is_named_first && !text.place.dialect().is_loose && !type.numbers.empty())
         become_named_values(type, base->plain());

@@ -56,30 +56,19 @@ bool is_bit(const Shape& shape) {
     return shape.kind == Shape::Kind::scalar && shape.format.coding == Coding::bit;
 }
 
-/// What is kept of an enumeration is the place of its value in the list.
-std::uint64_t number_of(const Type& type, std::uint64_t value) {
-    const bool is_listed = type.kind == Type::Kind::enumeration && !type.counted;
-    return is_listed ? static_cast<std::uint64_t>(type.numbers[value]) : value;
-}
-
-/// Empty: it is none of the type's.
-std::optional<std::uint64_t> value_of(const Type& type, std::uint64_t number) {
-    if (type.kind == Type::Kind::enumeration) {
-        const auto it = std::ranges::find(type.numbers, static_cast<std::int64_t>(number));
-        if (it == type.numbers.end()) return {};
-        return static_cast<std::uint64_t>(it - type.numbers.begin());
-    }
+bool is_value(const Type& type, std::uint64_t number) {
+    if (type.kind == Type::Kind::enumeration)
+        return type.is_unchecked || type.name_of(static_cast<std::int64_t>(number));
     const Wide whole = whole_in(type, number);
     const bool fits = whole >= smallest(type) && whole <= largest(type);
-    if (type.in_a_run().is_subrange && !fits) return {};
-    return number;
+    return !type.in_a_run().is_subrange || fits;
 }
 
 using Scalar = std::array<std::byte, 8>;
 
 Scalar bytes_of_scalar(const Shape& shape, std::uint64_t value) {
     Scalar bytes{};
-    store_packed(bytes.data(), 0, shape.format, number_of(*shape.type, value));
+    store_packed(bytes.data(), 0, shape.format, value);
     return bytes;
 }
 
@@ -154,9 +143,9 @@ Fault write_leaf(const Code& code, const Leaf& leaf, std::uint64_t first, std::u
     if (shape.kind == Shape::Kind::scalar) {
         Scalar bytes = bytes_of_scalar(shape, slot_value(leaf.slots));
         std::memcpy(bytes.data() + first, from, count);
-        const auto value = value_of(*shape.type, load_packed(bytes.data(), 0, shape.format));
-        if (!value) return Fault::out_of_range;
-        set_slot(leaf.slots, *value);
+        const std::uint64_t value = load_packed(bytes.data(), 0, shape.format);
+        if (!is_value(*shape.type, value)) return Fault::out_of_range;
+        set_slot(leaf.slots, value);
     } else if (shape.kind == Shape::Kind::text) {
         set_text(shape, leaf.slots, first, count, from);
     } else if (shape.kind == Shape::Kind::raw) {
@@ -347,9 +336,10 @@ Fault load_value(const Code& code, const Bytes& from, std::uint64_t bit, std::ui
     Scalar bytes{};
     const Fault wrong = read_bytes(code, behind(from, bit), shape.format.bytes, bytes.data());
     if (wrong != Fault::none) return wrong;
-    const auto found = value_of(*shape.type, load_packed(bytes.data(), bit % 8, shape.format));
-    value = found.value_or(0);
-    return found ? Fault::none : Fault::out_of_range;
+    const std::uint64_t found = load_packed(bytes.data(), bit % 8, shape.format);
+    const bool is_its = is_value(*shape.type, found);
+    value = is_its ? found : 0;
+    return is_its ? Fault::none : Fault::out_of_range;
 }
 
 Fault store_value(const Code& code, const Bytes& to, std::uint64_t bit, std::uint32_t number,
@@ -359,7 +349,7 @@ Fault store_value(const Code& code, const Bytes& to, std::uint64_t bit, std::uin
     Scalar bytes{};
     const Fault wrong = is_bit(shape) ? read_bytes(code, at, 1, bytes.data()) : Fault::none;
     if (wrong != Fault::none) return wrong;
-    store_packed(bytes.data(), bit % 8, shape.format, number_of(*shape.type, value));
+    store_packed(bytes.data(), bit % 8, shape.format, value);
     return write_bytes(code, at, shape.format.bytes, bytes.data());
 }
 

@@ -307,26 +307,38 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     return convert(w, from, *operand.type, *e.type, e.conversion.truncates, wanted);
 }
 
+/// What the numbers mean that become values of an enumeration. A catalogue's has the values of a
+/// source's in their order.
+Slot look_up_value(Writing& w, Slot slot, const Type& from, const Type& to) {
+    if (from.kind == Kind::enumeration && !to.has_numbers)
+        return from.counted ? slot : look_up_place(w, slot, from.numbers);
+    if (!from.is_integer() || to.of_number.empty()) return slot;
+    if (to.all_others_as_last)
+        slot = w.emit(Op::min_unsigned, none, slot, w.constant_slot(to.of_number.size() - 1));
+    return look_up(w, slot, to.of_number);
+}
+
+/// To an enumeration. One that is checked takes its own numbers alone.
+Slot convert_to_value(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates) {
+    if (from.is_real()) slot = convert_real(w, slot, from, lint_type, truncates, none);
+    if (to.is_unchecked)
+        return convert(w, slot, from.is_real() ? lint_type : from, *to.base, truncates, none);
+    slot = look_up_value(w, slot, from, to);
+    const bool has_gaps = to.has_numbers && !to.counted;
+    const Slot place = has_gaps ? look_up_place(w, slot, to.numbers) : slot;
+    w.put(Op::within, 0, place, w.table({0, to.values.size(), 1}));
+    return slot;
+}
+
 Slot convert(Writing& w, Slot slot, const Type& given_from, const Type& given_to, bool truncates,
              Slot wanted) {
     const Type &from = given_from.plain(), &to = given_to.plain();
     if (given_to.in_a_run().is_subrange)
         return within(w, given_to, convert(w, slot, from, to, truncates, none));
     if (&from == &to || (from.kind == Kind::boolean && to.kind == Kind::boolean)) return slot;
-    if (from.kind == Kind::enumeration && !from.counted) {
-        slot = look_up(w, slot, from.numbers);
+    if (to.kind == Kind::enumeration) return convert_to_value(w, slot, from, to, truncates);
+    if (from.kind == Kind::enumeration && (!from.counted || from.is_unchecked))
         return convert(w, slot, *from.base, to, truncates, wanted);
-    }
-    if (to.kind == Kind::enumeration) {
-        if (to.all_others_as_last && from.is_integer())
-            slot = w.emit(Op::min_unsigned, none, slot, w.constant_slot(to.of_number.size() - 1));
-        if (!to.of_number.empty() && from.is_integer()) slot = look_up(w, slot, to.of_number);
-        if (to.has_numbers && !to.counted && from.is_integer())
-            slot = look_up_place(w, slot, to.numbers);
-        if (from.is_real()) slot = convert_real(w, slot, from, lint_type, truncates, none);
-        w.put(Op::within, 0, slot, w.table({0, to.values.size(), 1}));
-        return slot;
-    }
     if (from.is_time() && to.is_time()) return convert_date(w, slot, from, to, wanted);
     if (from.is_time() || to.is_time()) return convert_time(w, slot, from, to, wanted);
     if (from.is_real() || to.is_real()) return convert_real(w, slot, from, to, truncates, wanted);

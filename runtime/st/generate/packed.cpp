@@ -139,7 +139,7 @@ Slot load_packed(Writing& w, const Location& from, Slot wanted) {
     }
     put(w, Op::load_packed, to, from, format_of(*from.packed).number());
     const Type& type = *from.packed->type;
-    if (type.kind == Kind::enumeration)
+    if (type.kind == Kind::enumeration && !type.is_unchecked)
         w.put(Op::within, 0, to, w.table({0, type.values.size(), 1}));
     return type.in_a_run().is_subrange ? within(w, type, to) : to;
 }

@@ -201,8 +201,8 @@ void finish_shape(Writing& w, std::uint32_t number) {
     const std::uint64_t bits = packed_bits(type, dialect);
     made.bits = bits > 0 ? bits : 8 * bytes_of(type);
     made.slots = slots_of(w, type);
-    const bool is_listed = type.kind == Kind::enumeration && !type.counted && type.base;
-    const auto format = packed_format(is_listed ? *type.base : type, dialect);
+    const bool is_value = type.kind == Kind::enumeration && type.base;
+    const auto format = packed_format(is_value ? *type.base : type, dialect);
     if (format) {
         made.kind = Shape::Kind::scalar;
         made.format = *format;

@@ -33,7 +33,7 @@ void write_name(Writing& w, const Type& type, Slot number, Slot text) {
     Jumps end;
     for (std::size_t i = 0; i < type.values.size(); ++i) {
         Jumps next;
-        const Slot kept = w.constant_slot(static_cast<std::uint64_t>(type.kept(i)));
+        const Slot kept = w.constant_slot(static_cast<std::uint64_t>(type.numbers[i]));
         w.jump(Op::jump_unless, 0, w.emit(Op::eq_word, none, number, kept), next);
         w.put(Op::text_copy, text, constant_text(w, type.values[i]),
               w.constant_slot(type.values[i].size()));

@@ -29,7 +29,7 @@ class FieldWriter {
         Field& id = add(own ? "fault_id" : "error_id", Direction::output,
                         lineshaft::Type::enumeration, 8 * error_id_slot);
         id.doc = "the fault of the last scan";
-        id.names = fault_names;
+        id.names = std::span<const std::string_view>(fault_names);
         for (std::uint32_t i = 0; i < made_.checked.globals.size(); ++i) {
             const Global& global = made_.checked.globals[i];
             if (global.object && !objects.contains(static_cast<int>(i))) continue;
@@ -211,8 +211,7 @@ class FieldWriter {
         field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
         if (!variable.doc.empty())
             field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
-        if (type.kind == Kind::enumeration)
-            field.names = made_.values.emplace_back(type.values.begin(), type.values.end());
+        if (type.kind == Kind::enumeration) field.names = names_of(type);
         const Type& range = type.in_a_run();
         const bool limited = (type.kind == Kind::integer || type.kind == Kind::bits) &&
                              (type.bits < 64 || range.is_subrange);
@@ -229,6 +228,22 @@ class FieldWriter {
         const bool wired = direction == Direction::input;
         if (wired && (limited || (type.is_real() && type.bits == 32)))
             kind_.checks.push_back({static_cast<std::uint32_t>(offset / 8), &type});
+    }
+
+    /// A catalogue's are names alone.
+    ValueNames names_of(const Type& type) const {
+        const auto& names = made_.values.emplace_back(type.values.begin(), type.values.end());
+        if (!type.has_numbers) return std::span(names);
+        const ValueNames made(type.name, names, type.numbers);
+        if (!type.is_unchecked) return made;
+        const Type& base = type.base->plain();
+        return made.with_others(clamped(smallest(base)), clamped(largest(base)));
+    }
+
+    static std::int64_t clamped(Wide number) {
+        using Limits = std::numeric_limits<std::int64_t>;
+        return static_cast<std::int64_t>(
+            std::clamp(number, Wide{Limits::min()}, Wide{Limits::max()}));
     }
 
     Library::Made& made_;

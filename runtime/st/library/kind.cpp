@@ -275,7 +275,8 @@ bool is_value(const Type& type, const std::byte* place) {
         case Kind::boolean:
             return number == 0 || number == 1;
         case Kind::enumeration:
-            return number >= 0 && number < std::ssize(type.values);
+            return type.is_unchecked ? is_value(*type.base, place)
+                                     : type.name_of(number) != nullptr;
         case Kind::integer:
         case Kind::bits:
             if (type.bits == 64 && !type.in_a_run().is_subrange) return true;

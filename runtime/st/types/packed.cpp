@@ -151,7 +151,7 @@ std::optional<PackedFormat> packed_format(const Type& given, const Dialect& dial
         case Kind::moment:
             return of_time(type, dialect);
         case Kind::enumeration:
-            if (!type.counted || !type.base) return {};
+            if (!type.base || !(type.counted || type.is_unchecked)) return {};
             return packed_format(*type.base, dialect);
         default:
             return {};

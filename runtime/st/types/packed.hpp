@@ -11,7 +11,8 @@
 namespace lineshaft::st {
 
 /// Of a scalar at an address or within packed memory, as the dialect's controllers have it. Empty
-/// for what has no packed form: a reference, an enumeration whose numbers are not 0, 1, 2, ...
+/// for what has no packed form: a reference, an enumeration that takes its own numbers alone where
+/// these are not 0, 1, 2, ...
 std::optional<PackedFormat> packed_format(const Type& type, const Dialect& dialect);
 
 /// Bits that a value takes; 0 for a type without a packed form: an instance, a reference, and what

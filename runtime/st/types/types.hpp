@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <deque>
@@ -23,8 +24,8 @@ enum class Referring : std::uint8_t {
 
 /// How values of a type are kept. Each scalar has a slot of 64 bits: an integer as std::int64_t
 /// (ULINT and LWORD as std::uint64_t), a REAL as a double that a float holds too, an enumeration as
-/// the place of its value in the list. An array or structure has those of its parts one behind the
-/// other, a text its length and then its characters, eight to a slot.
+/// the number of its value. An array or structure has those of its parts one behind the other, a
+/// text its length and then its characters, eight to a slot.
 struct Type {
     enum class Kind : std::uint8_t {
         boolean,
@@ -60,7 +61,8 @@ struct Type {
     std::int64_t lower = 0, upper = -1;  ///< of an array's index; of a subrange's values, as a
                                          ///< slot has them
     bool is_subrange = false;
-    bool is_unchecked = false;      ///< a subrange of CODESYS: of constants alone
+    bool is_unchecked = false;      ///< a subrange of CODESYS, and its enumeration that is not
+                                    ///< strict: of constants alone
     bool has_named_values = false;  ///< `values` names some of a number (6.4.4.3)
     bool is_unnamed = false;        ///< STRUCT without a TYPE: any of its members is equal
     bool counts_ns = false;         ///< LTIME, LDATE, LTOD, LDT: as numbers they are in ns
@@ -126,9 +128,11 @@ struct Type {
     /// What a variable of it may have in a run.
     const Type& in_a_run() const { return is_unchecked ? *base : *this; }
     bool has_values() const { return kind == Kind::enumeration || has_named_values; }
-    /// What a variable of it keeps for the value `i` of the list.
-    std::int64_t kept(std::size_t i) const {
-        return has_named_values ? numbers[i] : static_cast<std::int64_t>(i);
+    /// The first of an enumeration's values that has the number; null: none has.
+    const std::string* name_of(Wide number) const {
+        const auto it = std::ranges::find(numbers, number);
+        return it == numbers.end() ? nullptr
+                                   : &values[static_cast<std::size_t>(it - numbers.begin())];
     }
 };
 

@@ -81,10 +81,8 @@ std::string literal(Kind kind, Wide nanoseconds) {
 
 std::string value_text(const Type& type, std::uint64_t slot) {
     const auto number = static_cast<std::int64_t>(slot);
-    if (const auto named = std::ranges::find(type.numbers, number);
-        type.has_named_values && named != type.numbers.end())
-        return fmt::format("{}#{}", type.name,
-                           type.values[static_cast<std::size_t>(named - type.numbers.begin())]);
+    if (const std::string* name = type.has_values() ? type.name_of(number) : nullptr)
+        return fmt::format("{}#{}", type.name, *name);
     switch (type.kind) {
         case Kind::boolean:
             return slot != 0 ? "TRUE" : "FALSE";
@@ -101,9 +99,6 @@ std::string value_text(const Type& type, std::uint64_t slot) {
         case Kind::clock:
         case Kind::moment:
             return literal(type.kind, whole_in(type, slot));
-        case Kind::enumeration:
-            return slot < type.values.size() ? fmt::format("{}#{}", type.name, type.values[slot])
-                                             : std::to_string(number);
         default:
             return type.is_unsigned_64() ? std::to_string(slot) : std::to_string(number);
     }

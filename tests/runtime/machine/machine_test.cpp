@@ -24,8 +24,11 @@ TEST_CASE("a signal's value is what stands in its slot, described with its unit 
     bool on = true;
     const auto at = [](auto& member) { return reinterpret_cast<std::byte*>(&member); };
     const Signal speed{.name = "s", .unit = "mm/s", .names = {}, .slot = at(real)};
-    const Signal mode{
-        .name = "m", .type = Type::enumeration, .unit = {}, .names = names, .slot = at(state)};
+    const Signal mode{.name = "m",
+                      .type = Type::enumeration,
+                      .unit = {},
+                      .names = ValueNames(names),
+                      .slot = at(state)};
     const Signal flag{.name = "f", .type = Type::boolean, .unit = {}, .names = {}, .slot = at(on)};
     CHECK(speed.value() == Value(-0.125));
     CHECK(speed.describe(speed.value()) == "-0.125 mm/s");

@@ -37,8 +37,25 @@ TEST_CASE("a trace has 0 and 1, whole numbers and the shortest reals") {
     CHECK(format(1e300) == "1e+300");
 }
 
+TEST_CASE("an enumeration's numbers need not be 0, 1, 2") {
+    static constexpr std::string_view list[] = {"idle", "run", "runs", "fault"};
+    static constexpr std::int64_t numbers[] = {0, 10, 10, -3};
+    const ValueNames names("State", list, numbers);
+    CHECK(describe(std::int64_t{10}, Type::enumeration, names, "") == "run");
+    CHECK(describe(std::int64_t{-3}, Type::enumeration, names, "") == "fault");
+    CHECK(describe(std::int64_t{1}, Type::enumeration, names, "") == "1");
+    CHECK(names.find("runs") == 10);
+    CHECK_FALSE(names.takes(1));
+    CHECK(names.with_others(-128, 127).takes(1));
+    CHECK_FALSE(names.with_others(-128, 127).takes(200));
+    CHECK(names.fits(names.with_others(-128, 127)));
+    CHECK_FALSE(names.with_others(-128, 127).fits(names));
+    CHECK_FALSE(names.fits(ValueNames(list)));
+}
+
 TEST_CASE("a person reads true, names and units") {
-    constexpr std::string_view names[] = {"idle", "run"};
+    static constexpr std::string_view list[] = {"idle", "run"};
+    const ValueNames names(list);
     CHECK(describe(true, Type::boolean, {}, "") == "true");
     CHECK(describe(false, Type::boolean, {}, "") == "false");
     CHECK(describe(std::int64_t{1}, Type::enumeration, names, "") == "run");

@@ -251,7 +251,7 @@ TEST_CASE("a block's error ends the run and names block, scan and time") {
     bench.live("main").reason = 1;
     bench.report_errors("main");
     static constexpr std::string_view names[] = {"none", "not_finite"};
-    bench.task("main").errors.front().names = names;
+    bench.task("main").errors.front().names = ValueNames(names);
     const RunResult result = bench.run();
     CHECK(result.outcome == Outcome::block_error);
     CHECK(result.time == 6 * ms);

@@ -93,7 +93,7 @@ TEST_CASE("a value that its registers have comes back from them") {
 TEST_CASE("registers without a value of the signal's have none") {
     static constexpr std::string_view names[] = {"idle", "runs"};
     MappedSignal choice = mapped(uint16, 1, Type::enumeration);
-    choice.signal.names = names;
+    choice.signal.names = ValueNames(names);
     CHECK(from_registers(choice, Words{1}) == Value{std::int64_t{1}});
     CHECK_FALSE(from_registers(choice, Words{2}));
     CHECK_FALSE(from_registers(mapped(uint16, 1, Type::boolean), Words{2}));

@@ -37,7 +37,7 @@ TraceSetup setup() {
     TraceSetup setup;
     setup.signals = {signal("a.on", Type::boolean), signal("a.x", Type::real, "mm"),
                      signal("a.state", Type::enumeration), signal("a.n", Type::integer)};
-    setup.signals[2].names = states;
+    setup.signals[2].names = ValueNames(states);
     return setup;
 }
 

@@ -5,7 +5,7 @@ import { conditions } from "#live/trigger";
 import { Values } from "#live/values";
 import { readout } from "#page/cursors";
 import { element, nextFrame, row } from "#page/dom";
-import { duration } from "#page/format";
+import { duration, numbersOf } from "#page/format";
 import { followTheme } from "#page/theme";
 
 const byId = (id) => document.getElementById(id);
@@ -97,9 +97,10 @@ function arm(form) {
     return showScope();
   }
   const { signal, condition, level, before, after } = form;
-  const { type, names } = scope.signals.find(({ name }) => name === signal.value);
-  const value = names.length > 0 ? names.indexOf(level.value.trim()) : Number(level.value.trim() || NaN);
-  if (names.length > 0 && value < 0) throw new Error(`expected one of ${names.join(", ")}`);
+  const found = scope.signals.find(({ name }) => name === signal.value);
+  const { type, names } = found;
+  const value = names.length > 0 ? numbersOf(found)[names.indexOf(level.value.trim())] : Number(level.value.trim() || NaN);
+  if (value === undefined) throw new Error(`expected one of ${names.join(", ")}`);
   if (type !== "boolean" && Number.isNaN(value)) throw new Error("expected a number to compare with");
   if (![before, after].every((each) => Number(each.value) >= 0)) throw new Error("expected times in seconds");
   scope.arm({ signal: signal.value, condition: condition.value, level: value,

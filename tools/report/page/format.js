@@ -47,11 +47,23 @@ export function timeTicks(values, unit) {
   return values.map((value) => `${tick(+(value * factor).toPrecision(12))} ${shown}`);
 }
 
+/** The numbers of an enumeration's names. */
+export const numbersOf = ({ names, numbers }) => numbers ?? names.map((_, place) => place);
+
+/** Where the name of an enumeration's number stands in the list. */
+const placeOf = ({ numbers }, value) => (numbers ? numbers.indexOf(value) : value);
+
+/** Numbers with their first names, from the least on. */
+export const statesOf = (signal) =>
+  numbersOf(signal).map((value, place) => ({ value, name: signal.names[place] }))
+    .filter(({ value }, place, all) => all.findIndex((other) => other.value === value) === place)
+    .sort((a, b) => a.value - b.value);
+
 /** What one sample of a signal says. */
 export function sample(signal, value) {
   if (isTime(signal.unit) && !Number.isNaN(value)) return duration(value * secondsIn[signal.unit]);
   if (signal.type === "boolean" && !Number.isNaN(value)) return value ? "true" : "false";
-  return signal.names?.[value] ?? number(value);
+  return signal.names?.[placeOf(signal, value)] ?? number(value);
 }
 
 export const withUnit = (text, unit) => (unit ? `${text} ${unit}` : text);

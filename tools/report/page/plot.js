@@ -1,7 +1,7 @@
 import { CursorLines } from "#page/cursors";
 import { colour, dashes, element, palette } from "#page/dom";
 import { drawExpectations, failedBounds } from "#page/expectations";
-import { isTime, tick, timeTicks } from "#page/format";
+import { isTime, numbersOf, statesOf, tick, timeTicks } from "#page/format";
 import { Legend } from "#page/legend";
 
 const least = 64; // width of an axis
@@ -57,7 +57,7 @@ const isShown = ({ hidden, run }) => !hidden && !run.hidden;
 function scaleOf({ signal }, arranged) {
   if (arranged?.hasOwnAxis(signal.name)) return `own ${signal.name}`;
   if (signal.type === "boolean") return "boolean";
-  return signal.type === "enumeration" ? `states ${signal.names.join()}` : `unit ${signal.unit}`;
+  return signal.type === "enumeration" ? `states ${signal.names.join()} ${numbersOf(signal).join()}` : `unit ${signal.unit}`;
 }
 
 /**
@@ -197,7 +197,10 @@ export class Plot {
     if (this.isStrips) return [0, this.lanes];
     const [{ signal }] = this.#of(scale);
     if (signal.type === "boolean") return [-0.1, 1.1];
-    if (signal.type === "enumeration") return [-0.5, signal.names.length - 0.5];
+    if (signal.type === "enumeration") {
+      const known = [...numbersOf(signal), low ?? Infinity, high ?? -Infinity];
+      return [Math.min(...known) - 0.5, Math.max(...known) + 0.5];
+    }
     if (low === null || low === undefined) return padded(low, high);
     const bounds = failedBounds(this.#of(scale), this.view.range);
     return padded(Math.min(low, ...bounds), Math.max(high, ...bounds));
@@ -222,7 +225,7 @@ export class Plot {
   #namesOf(scale) {
     const [{ signal }] = this.#of(scale);
     if (signal.type === "boolean") return ["false", "true"];
-    return signal.type === "enumeration" ? signal.names.map((name) => this.#state(name)) : null;
+    return signal.type === "enumeration" ? statesOf(signal).map(({ name }) => this.#state(name)) : null;
   }
 
   #state(name) {
@@ -246,7 +249,10 @@ export class Plot {
     if (place > 0) axis.grid = { show: false };
     const names = this.#namesOf(scale);
     if (scale === strips) return { ...axis, label: "", splits: () => [], grid: { show: false } };
-    if (names) return { ...axis, label: name, splits: () => names.map((_, index) => index), values: () => names };
+    if (names) {
+      const numbers = signal.type === "enumeration" ? statesOf(signal).map(({ value }) => value) : [0, 1];
+      return { ...axis, label: name, splits: () => numbers, values: () => names };
+    }
     if (isTime(signal.unit)) return { ...axis, label: name, values: (_, ticks) => timeTicks(ticks, signal.unit) };
     return { ...axis, label: `${name}${signal.unit ? `[${signal.unit}]` : "no unit"}` };
   }
