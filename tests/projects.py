@@ -558,21 +558,24 @@ def check_binary_libraries():
                   "FUNCTION_BLOCK MC_BR_Reset\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK FRM_write\n\tVAR_INPUT\n\t\tenable : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tstatus : UINT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"
                   "FUNCTION_BLOCK MC_BR_NotUsed\n\tVAR_INPUT\n\t\tExecute : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n",
-        "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n"}
+        "McBase": "FUNCTION_BLOCK MC_BR_Other\nEND_FUNCTION_BLOCK\n",
+        "FileIO": "FUNCTION_BLOCK FileClose\n\tVAR_INPUT\n\t\tenable : BOOL;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n"}
     for name, text in declared.items():
         write(f"Binary/Logical/Libraries/{name}/{'Binary' if name == 'standard' else 'binary'}.lby", lists.format(name))
         write(f"Binary/Logical/Libraries/{name}/{name}.fun", text)
     write("Binary/Logical/Libraries/McBase/McBase.typ", "TYPE\n\tMcAxisType : STRUCT\n\t\tcontrolif : REFERENCE TO McInternal;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Binary/Logical/Libraries/FileIO/binary.lby", lists.format("FileIO").replace("</Files>", "<File>FileIO.var</File></Files>"))
+    write("Binary/Logical/Libraries/FileIO/FileIO.var", "VAR CONSTANT\n\tfiERR_EXIST : UINT := 20705;\n\tfiOWN : UINT := 1;\nEND_VAR\n")
     write("Binary/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
           "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
-    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\tframe : FRM_write;\n\ti, n, filled : INT;\nEND_VAR\n")
+    write("Binary/Logical/P/Variables.var", "VAR\n\tt : TON := (0);\n\taxis : McAxisType;\n\tpower : MC_Power;\n\treset : MC_BR_Reset;\n\tframe : FRM_write;\n\ti, n, filled : INT;\n\texists : UINT;\nEND_VAR\n")
     write("Binary/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := T#10ms);\n\tIF t.Q THEN n := n + 1; END_IF\n\ti := REAL_TO_INT(42.0) + LEN('abc');\n"
-          "\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\n\tframe(enable := TRUE);\nEND_PROGRAM\n")
+          "\texists := fiERR_EXIST + fiOWN;\n\tbrsmemset(ADR(filled), 1, SIZEOF(filled));\n\tpower(Axis := ADR(axis), Enable := TRUE);\n\treset();\n\tframe(enable := TRUE);\nEND_PROGRAM\n")
     said = run("check", "Binary")
     assert said.splitlines()[0] == "ok  Binary" and said.count("warning") == 1, said
     assert "of the library 'McAxis' there are declarations alone, so this does nothing: MC_BR_Reset, FRM_write" in said, said
     run("new", "binary", "--from", "Binary")
-    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n  - {at: 95 ms, P.frame.status: 9999}\n")
+    write("binary.yaml", (work / "binary.yaml").read_text() + "expect:\n  - {at: 95 ms, P.n: 9}\n  - {at: 95 ms, P.i: 45}\n  - {at: 95 ms, P.filled: 257}\n  - {at: 95 ms, P.exists: 20706}\n  - {at: 95 ms, P.frame.status: 9999}\n")
     run("run", "binary.yaml", "--quiet")
 
 

@@ -23,12 +23,8 @@ std::string_view read_as(const Token& name) {
     return name.place.source ? std::string_view(name.place.source->file->read_as) : "";
 }
 
-bool is_binary(const Token& name) {
-    return read_as(name).starts_with(of_binary_library);
-}
-
 bool is_declared(const Token& name) {
-    return is_binary(name) || read_as(name).starts_with(of_library_in_c);
+    return is_of_binary_library(name) || read_as(name).starts_with(of_library_in_c);
 }
 
 /// The folder of its file.
@@ -135,16 +131,23 @@ void answer(Tree& tree, Pou& unit) {
 
 }  // namespace
 
+bool is_of_binary_library(const Token& name) {
+    return read_as(name).starts_with(of_binary_library);
+}
+
 void leave_out_declared(Tree& tree, const Catalog& catalog) {
     Known known(catalog);
     for (const Pou* unit : tree.units)
-        if (unit->kind == PouKind::function_block && is_binary(unit->name))
+        if (unit->kind == PouKind::function_block && is_of_binary_library(unit->name))
             known.note_version(*unit);
-    const auto is_here = [&](const Token& name) { return is_binary(name) && known.has(name); };
+    const auto is_here = [&](const Token& name) {
+        return is_of_binary_library(name) && known.has(name);
+    };
     std::erase_if(tree.types, [&](const TypeDeclaration& type) { return is_here(type.name); });
     std::erase_if(tree.units, [&](const Pou* unit) { return is_here(unit->name); });
     for (Pou* unit : tree.units)
-        if (unit->kind == PouKind::function_block && is_binary(unit->name) && is_empty(*unit))
+        if (unit->kind == PouKind::function_block && is_of_binary_library(unit->name) &&
+            is_empty(*unit))
             answer(tree, *unit);
     for (DeclarationBlock& block : tree.globals)
         std::erase_if(block.declarations,

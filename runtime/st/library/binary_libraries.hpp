@@ -12,6 +12,9 @@ namespace lineshaft::st {
 /// declares functions and blocks without their bodies. In C the library is the project's own.
 inline constexpr std::string_view of_binary_library = ".binary", of_library_in_c = ".ansic";
 
+/// What is declared there is no variable that a source means by its name alone.
+bool is_of_binary_library(const Token& name);
+
 /// Leaves out what binary libraries declare and what is here: functions of the standard, kinds of
 /// the catalogue but commands of axes, names of a library of the catalogue that is named as theirs.
 /// So these are meant by their names. `status` of the other blocks is ERR_NOTIMPLEMENTED.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/library/binary_libraries.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -219,7 +220,8 @@ void LibraryNames::note_names(const Tree& tree) {
         if (!variables) {
             variables.emplace();
             for (std::size_t i = declarations_; i < tree.declarations.size(); ++i)
-                variables->insert(tree.declarations[i].name.text);
+                if (const Token& own = tree.declarations[i].name; !is_of_binary_library(own))
+                    variables->insert(own.text);
         }
         return variables->contains(name);
     };
