@@ -45,8 +45,10 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
         case Type::boolean:
             return among(2) && as_whole(value, input.type) ? std::optional<Value>(value == 1)
                                                            : std::nullopt;
-        case Type::enumeration:
-            return as_whole(value, input.type);
+        case Type::enumeration: {
+            const auto number = as_whole(value, input.type);
+            return number && input.admits(*number) ? number : std::nullopt;
+        }
         case Type::integer:
         case Type::unsigned_integer:
             return as_whole(same_unit ? value : convert(value, from, to), input.type);
