@@ -31,7 +31,7 @@ struct Shape {
     /// Of a structure its members in Code::members; of a block its variables, which have slots.
     std::uint32_t first = 0;
     std::uint32_t count = 0;  ///< elements, members, variables
-    std::uint32_t base = 0;     ///< of a block: that of its base plus 1; 0: it has none
+    std::uint32_t base = 0;   ///< of a block: that of its base plus 1; 0: it has none
 };
 
 struct ShapeMember {
