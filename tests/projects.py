@@ -452,6 +452,13 @@ def check_tasks_of_plcopen():
         assert line in text, text
     write("started.yaml", text + "expect: [{at: end, one.n: 201}, {at: end, two.n: 0}, {at: end, three.n: 201}]\n")
     run("run", "--quiet", "started.yaml")
+    # Beside a project with a mistake what no program names is left out, and so is what only starts a task.
+    whole = (work / "started.xml").read_text()
+    write("lost/a/plc.xml", whole)
+    write("lost/b/plc.xml", re.sub("<instances>.*</instances>", "", whole).replace('name="P"', 'name="Wrong"').replace("n := n + 1", "n := missing"))
+    run("new", "lost", "--from", "lost")
+    assert "'event' runs P at the event 'go'" in (work / "lost.yaml").read_text()
+    run("run", "--quiet", "lost.yaml")
 
 
 def check_programs_without_tasks():
@@ -613,6 +620,95 @@ def check_addresses():
         write("Addresses/Logical/P/Main.st", main.replace("value ACCESS third;", wrong))
         said = run("run", "addresses.yaml", "--quiet", code=3)
         assert fault in said and "Main.st:9" in said, said
+
+
+# What B&R's manual TM251 says: the value of AsBrStr's functions is the address behind what was written.
+MEMORY_OF_BR = """TYPE S : STRUCT a : INT; s : STRING[10]; END_STRUCT; END_TYPE
+TYPE Mode : (STOP, GO); END_TYPE
+FUNCTION_BLOCK Base
+VAR_INPUT e : BOOL; p : REFERENCE TO S; END_VAR
+VAR c : INT; mode : Mode; text : STRING[300]; list : ARRAY[0..99] OF S; t : TON; END_VAR
+VAR_OUTPUT is_bound : BOOL; END_VAR
+c := c + 1;
+is_bound := p <> 0;
+t(IN := e, PT := T#1s);
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK User
+VAR_INPUT p : REFERENCE TO S; END_VAR
+VAR_OUTPUT o : INT; END_VAR
+o := p.a;
+END_FUNCTION_BLOCK
+TEST 'memory, one behind the other'
+VAR Memory : ARRAY[0..99] OF BYTE; Value : USINT := 252; NextAdr : UDINT; s : ARRAY[0..2] OF USINT := [1, 2, 3]; END_VAR
+NextAdr := brsmemset(ADR(Memory), Value, 50);
+NextAdr := brsmemset(NextAdr, 12, 25);
+ASSERT_EQ(Memory[49], 252); ASSERT_EQ(Memory[50], 12); ASSERT_EQ(Memory[74], 12); ASSERT_EQ(Memory[75], 0);
+NextAdr := brsmemmove(brsmemcpy(NextAdr, ADR(s), 3), ADR(s), 2);
+ASSERT_EQ(Memory[77], 3); ASSERT_EQ(Memory[78], 1); ASSERT_EQ(Memory[80], 0);
+ASSERT_EQ(NextAdr - ADR(Memory), 80);
+END_TEST
+TEST 'texts, one behind the other'
+VAR s : STRING[20]; p : UDINT; END_VAR
+p := brsstrcpy(ADR(s), ADR('ab'));
+p := brsstrcpy(p, ADR('cd'));
+ASSERT_EQ(s, 'abcd');
+p := brsstrcat(ADR(s), ADR('ef'));
+brsstrcpy(p, ADR('gh'));
+ASSERT_EQ(s, 'abcdefgh');
+END_TEST
+TEST 'an instance becomes zero'
+VAR x : Base; n : S; END_VAR
+x.mode := GO; x.text := 'abc'; x.list[99].a := 3; x.list[99].s := 'd'; x.p := ADR(n);
+x(e := TRUE);
+ASSERT_TRUE(x.is_bound); ASSERT_TRUE(x.t.IN);
+brsmemset(ADR(x), 0, SIZEOF(x));
+ASSERT_EQ(x.c, 0); ASSERT_EQ(x.mode, STOP); ASSERT_EQ(x.text, ''); ASSERT_EQ(x.list[99].a, 0); ASSERT_EQ(x.list[99].s, '');
+ASSERT_FALSE(x.t.IN); ASSERT_EQ(x.t.PT, T#0s); ASSERT_FALSE(x.is_bound);
+x();
+ASSERT_FALSE(x.is_bound); ASSERT_EQ(x.c, 1);
+END_TEST
+TEST 'an address that is kept as a number goes to a pin that is a reference'
+VAR f : User; x : S; u : UDINT; END_VAR
+x.a := 5; u := ADR(x); f.p := u; f(); ASSERT_EQ(f.o, 5);
+END_TEST
+TEST 'distances of addresses'
+VAR s : STRING[20]; p, n : UDINT; END_VAR
+p := ADR(s) + 2; n := p - ADR(s); ASSERT_EQ(n, 2);
+END_TEST
+TEST 'timers of 10 ms, and both edges'
+VAR on : TON_10ms; off : TOF_10ms; pulse : TP_10ms; edge : RF_TRIG; END_VAR
+on(IN := TRUE, PT := 5); off(IN := TRUE, PT := 5); off(IN := FALSE); pulse(IN := TRUE, PT := 5); edge(CLK := TRUE);
+ASSERT_FALSE(on.Q); ASSERT_TRUE(off.Q); ASSERT_TRUE(pulse.Q); ASSERT_TRUE(edge.Q);
+ADVANCE_TIME(T#40ms);
+on(); off(); pulse(); edge();
+ASSERT_FALSE(on.Q); ASSERT_TRUE(off.Q); ASSERT_TRUE(pulse.Q); ASSERT_FALSE(edge.Q); ASSERT_EQ(on.ET, 4);
+ADVANCE_TIME(T#10ms);
+on(); off(); pulse(); edge(CLK := FALSE);
+ASSERT_TRUE(on.Q); ASSERT_FALSE(off.Q); ASSERT_FALSE(pulse.Q); ASSERT_TRUE(edge.Q); ASSERT_EQ(on.ET, 5);
+END_TEST
+"""
+
+
+def check_memory_of_br():
+    path = write("br/memory_test.st", MEMORY_OF_BR)
+    told = run("test", path, "--source-dialect", "automation_studio")
+    assert "6 of 6 passed" in told, told
+    path.write_text(MEMORY_OF_BR.replace("brsmemset(ADR(x), 0, SIZEOF(x))", "brsmemset(ADR(x), 1, SIZEOF(x))"))
+    assert "outside_of_variable" in run("test", path, "--source-dialect", "automation_studio", code=1)
+    library = "br_libraries/Logical/Libraries/"
+    for name, declared in (("standard", "TON_10ms\n\tVAR_INPUT\n\t\tIN : BOOL;\n\t\tPT : UDINT;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tQ : BOOL;\n\t\tET : UDINT;"),
+                           ("runtime", "rf_trig\n\tVAR_INPUT\n\t\tCLK : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tQ : BOOL;")):
+        write(f"{library}{name}/binary.lby", f'<?xml version="1.0"?>\n<Library SubType="binary" xmlns="http://br-automation.co.at/AS/Library"><Files><File>{name}.fun</File></Files></Library>\n')
+        write(f"{library}{name}/{name}.fun", f"FUNCTION_BLOCK {declared}\n\tEND_VAR\nEND_FUNCTION_BLOCK\n")
+    write("br_libraries/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Variables.var</File><File>Main.st</File></Files></Program>\n")
+    write("br_libraries/Logical/P/Variables.var", "VAR\n\tt : TON_10ms;\n\tedge : rf_trig;\n\tdone : BOOL;\n\tedges : INT;\nEND_VAR\n")
+    write("br_libraries/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tt(IN := TRUE, PT := 5);\n\tdone := t.Q;\n\tedge(CLK := done);\n\tIF edge.Q THEN edges := edges + 1; END_IF\nEND_PROGRAM\n")
+    assert "does nothing" not in run("check", "br_libraries")
+    run("new", "br_libraries", "--from", "br_libraries")
+    text = (work / "br_libraries.yaml").read_text()
+    write("br_libraries.yaml", text + "expect:\n  - {at: 45 ms, P.done: false}\n  - {at: 65 ms, P.done: true}\n  - {at: 95 ms, P.edges: 1}\n")
+    run("run", "br_libraries.yaml", "--quiet")
 
 
 def check_instruction_lists():
@@ -1795,6 +1891,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_older_forms()
     check_binary_libraries()
     check_addresses()
+    check_memory_of_br()
     check_instruction_lists()
     check_editors_of_matiec()
     check_prefix()

@@ -84,7 +84,7 @@ with tempfile.TemporaryDirectory() as folder:
     expect("exit code of what fails", code, 1)
     compare(root / "fail/expected.txt", said)
     suite = xml.parse(junit).getroot()
-    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("19", "4"))
+    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("20", "4"))
     run(root / "bad", "no_test.st", "--junit", str(junit))
     case = xml.parse(junit).getroot().find("testcase")
     expect("a file that is refused", [case.get(key) for key in ("classname", "file", "name")], ["no_test.st"] * 3)

@@ -57,8 +57,8 @@ class Excerpts {
 
     bool is_empty() const { return text_.empty(); }
     std::string_view text() const { return text_; }
-    /// The text, under the path of the file; `part` names it among several of the file. Mistakes and
-    /// warnings are its own.
+    /// The text, under the path of the file; `part` names it among several of the file. Mistakes
+    /// and warnings are its own.
     std::shared_ptr<const SourceFile> finish(std::string path, std::string part = {},
                                              const Diagnostics& mistakes = {});
 

@@ -335,17 +335,6 @@ void add_addresses(const std::vector<Field>& addresses, std::vector<std::string>
         }
 }
 
-/// Which programs an event starts that is not known here.
-std::string remark_on_event(const projects::ProjectTask& task) {
-    std::string programs;
-    for (const projects::TaskProgram& program : task.programs)
-        programs += (programs.empty() ? "" : ", ") + program.text;
-    return fmt::format(
-        "  # '{}' runs {} at {}: give it a task such as x: {{on: a.signal}}\n", task.name.text,
-        programs.empty() ? "nothing" : programs,
-        task.event.text.empty() ? "an event" : fmt::format("the event '{}'", task.event.text));
-}
-
 std::string comment_of(std::string_view note) {
     return note.empty() ? "" : fmt::format("  # {}", note);
 }
@@ -450,7 +439,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
                            Diagnostics& out) {
     const auto chosen = chosen_project(path, out);
     if (!chosen) return {};
-    const projects::Project& project = chosen->project;
+    projects::Project project = chosen->project;
     if (project.sources.empty() && out.empty()) return tell_no_source(path, out), std::string();
     Diagnostics found;  // of which a run tells the warnings
     const auto library =
@@ -459,6 +448,7 @@ std::string program_around(const std::string& path, const std::filesystem::path&
                     : std::optional<st::Library>();
     for (const Diagnostic& d : found.list()) out.add(d.code, d.mark, d.message, d.help);
     if (!library) return {};
+    forget_lost_events(library->kinds(), project);
     const std::vector<NewTask> tasks = tasks_of(project);
     std::vector<NewBlock> programs = programs_of(*library, tasks, is_exported(project));
     const auto& organization_blocks = project.organization_blocks;

@@ -91,6 +91,30 @@ bool is_taken(const projects::ProjectTask& task) {
     return task.every > 0 || task.event.is_edge || task.counts_always || task.is_free;
 }
 
+std::string remark_on_event(const projects::ProjectTask& task) {
+    std::string programs;
+    for (const projects::TaskProgram& program : task.programs)
+        programs += (programs.empty() ? "" : ", ") + program.text;
+    return fmt::format(
+        "  # '{}' runs {} at {}: give it a task such as x: {{on: a.signal}}\n", task.name.text,
+        programs.empty() ? "nothing" : programs,
+        task.event.text.empty() ? "an event" : fmt::format("the event '{}'", task.event.text));
+}
+
+void forget_lost_events(std::span<const BlockType> kinds, projects::Project& project) {
+    constexpr std::string_view globals = "globals";
+    const auto list = std::ranges::find(kinds, globals, &BlockType::name);
+    for (projects::ProjectTask& task : project.tasks) {
+        const std::string signal = signal_of(task.event.text);
+        if (!task.event.is_edge || !signal.starts_with("globals.")) continue;
+        const auto is_it = [&](const Field& field) {
+            return lower(field.name) == lower(signal.substr(globals.size() + 1));
+        };
+        if (list == kinds.end() || std::ranges::none_of(list->fields, is_it))
+            task.event.is_edge = false;
+    }
+}
+
 bool is_memory(const projects::OrganizationBlock& block) {
     using enum projects::OrganizationBlock::Start;
     return block.start == clock_memory || block.start == system_memory;

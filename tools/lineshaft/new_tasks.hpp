@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/model/catalog.hpp"
 #include "runtime/projects/project.hpp"
 
 namespace lineshaft {
@@ -23,6 +25,13 @@ std::string plain_name(std::string_view text);
 
 /// The project says what starts it, so that it becomes a task.
 bool is_taken(const projects::ProjectTask& task);
+
+/// Which programs an event starts that is not known here.
+std::string remark_on_event(const projects::ProjectTask& task);
+
+/// An event is not known of which no list of globals is left: of many projects in a folder what no
+/// program names may be left out.
+void forget_lost_events(std::span<const BlockType> kinds, projects::Project& project);
 
 /// It is none that runs code of the project.
 bool is_memory(const projects::OrganizationBlock& block);

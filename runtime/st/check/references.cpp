@@ -371,7 +371,9 @@ bool means_address(const Expression& e, const Expression& other) {
     const bool is_alias = e.kind == E::deref && e.operands[0]->type->is_alias();
     if (!is_alias || !e.type || !e.place.dialect().references_take_addresses) return false;
     const bool is_number = e.type->is_number() || e.type->is_bits();
-    return other.type->is_pointer() || (is_null(other) && !is_number);
+    const bool is_kept_number = e.place.dialect().vendor == Vendor::automation_studio &&
+                                e.operands[0]->kind == E::member && holds_address(*other.type);
+    return other.type->is_pointer() || ((is_null(other) || is_kept_number) && !is_number);
 }
 
 void take_addresses(Checking& c, Expression& e) {
@@ -405,6 +407,9 @@ const Type* check_reference_operator(Checking& c, Expression*& e, const Type* ex
     Expression *&left = e->operands[0], *&right = e->operands[1];
     const bool is_sum = e->op == Word::plus || e->op == Word::minus;
     const bool both = left->type->is_reference() && right->type->is_reference();
+    if (e->op == Word::minus && right->type->is_pointer() && left->type->is_integer() &&
+        holds_address(*left->type))
+        return coerce(c, right, *left->type) ? e->type = left->type : nullptr;
     if (is_sum && !both) return check_moved(c, e);
     const Type& type =
         left->type->is_reference() && left->type != &null_type ? *left->type : *right->type;

@@ -455,6 +455,7 @@ const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
                           fmt::format("expected a whole number, found {}", describe(*value->type)));
         if (value->type->is_any() && !coerce(c, value, lint_type)) return nullptr;
     }
+    if (f.result == Generic::pointer) return &pointer_to(c, bits_type(8));
     if (f.result != Generic::any_int) return &dint_type;
     return expected && expected->kind == Kind::integer ? &expected->plain()
                                                        : &integer_type(32, false);

@@ -245,6 +245,57 @@ const std::byte* same_value(const Code& code, const Run& run, std::uint64_t firs
     return found->slots;
 }
 
+bool make_zero(const Code& code, std::uint32_t number, std::byte* slots);
+
+/// All elements or members of what has such, variables of a block.
+bool make_parts_zero(const Code& code, const Shape& shape, std::byte* slots) {
+    bool is_made = true;
+    for (std::uint32_t i = 0; i < shape.count && is_made; ++i) {
+        if (shape.kind == Shape::Kind::array) {
+            is_made = make_zero(code, shape.element, slots);
+            slots += 8 * code.shapes[shape.element].slots;
+        } else {
+            const ShapeMember& member = code.members[shape.first + i];
+            is_made = make_zero(code, member.shape, slots + 8 * member.slot);
+        }
+    }
+    return is_made;
+}
+
+/// As it begins, but for its inputs, which are 0.
+bool make_standard_zero(const Type& type, std::byte* slots) {
+    if (type.is_object()) return false;
+    type.standard->construct(slots);
+    for (const Variable* member : type.members) {
+        if (member->section != Section::input || !member->type->is_scalar()) continue;
+        if (member->is_byte)
+            slots[8 * member->slot + member->byte] = std::byte{0};
+        else if (member->type->kind != Type::Kind::handle)
+            set_slot(slots + 8 * member->slot, 0);
+    }
+    return true;
+}
+
+/// A value of that shape, of which all bytes become 0; false: 0 is no value of its type.
+bool make_zero(const Code& code, std::uint32_t number, std::byte* slots) {
+    const Shape& shape = code.shapes[number];
+    const Type& type = *shape.type;
+    if (type.kind == Type::Kind::array || type.kind == Type::Kind::structure ||
+        type.kind == Type::Kind::block)
+        return make_parts_zero(code, shape, slots);
+    if (type.kind == Type::Kind::standard) return make_standard_zero(type, slots);
+    std::uint64_t first = 0;
+    if (type.kind == Type::Kind::handle) first = ~first;
+    if (shape.kind == Shape::Kind::scalar) {
+        const auto value = value_of(type, 0);
+        if (!value) return false;
+        first = *value;
+    }
+    std::memset(slots, 0, 8 * shape.slots);
+    set_slot(slots, first);
+    return true;
+}
+
 Bytes behind(Bytes of, std::uint64_t bits) {
     of.first += static_cast<std::int64_t>(bits / 8);
     return of;
@@ -297,7 +348,13 @@ Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint
 Fault fill_bytes(const Code& code, const Bytes& to, std::byte value, std::uint64_t count) {
     std::byte filled[longest_run];
     std::ranges::fill(filled, value);
-    return visit_runs(code, to, count, false, is_nothing,
+    const auto make_whole_zero = [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
+        const bool is_all = run.leaf && run.first == at && run.end - run.first == bytes;
+        return value == std::byte{0} && is_all &&
+               code.shapes[run.leaf->number].kind == Shape::Kind::whole &&
+               make_zero(code, run.leaf->number, run.leaf->slots);
+    };
+    return visit_runs(code, to, count, false, make_whole_zero,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
                           return write_run(code, to, run, at, bytes, filled);
                       });

@@ -28,6 +28,7 @@ Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count, const 
 
 /// As if all were read before the first is written.
 Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint64_t count);
+/// An instance of which all bytes become 0 has all its variables 0, and refers to nothing.
 Fault fill_bytes(const Code& code, const Bytes& to, std::byte value, std::uint64_t count);
 /// -1, 0 or 1 in `order`.
 Fault compare_bytes(const Code& code, const Bytes& a, const Bytes& b, std::uint64_t count,

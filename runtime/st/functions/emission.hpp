@@ -59,6 +59,8 @@ struct Emission {
     virtual Slot capacity(std::size_t argument) = 0;  ///< of a text
 
     virtual Slot reference(std::size_t argument) = 0;  ///< the first of its slots
+    /// A slot with the address of a reference that is so many bytes behind another one.
+    virtual Slot moved(Slot reference, Slot bytes) = 0;
     /// An instruction that gives nothing, or whose slot `a` is given.
     virtual void put(Op op, Slot a, Slot b, Slot c, Slot d = 0) = 0;
 

@@ -194,6 +194,20 @@ void add_members(Writing& w, Shape& made) {
     w.code.members.insert(w.code.members.end(), members.begin(), members.end());
 }
 
+/// Variables that stay from call to call, of a block and of those that it extends.
+void add_variables(Writing& w, Shape& made) {
+    std::vector<ShapeMember> members;
+    for (const Routine* block = made.type->routine; block; block = block->base)
+        for (const Variable& variable : block->variables) {
+            const bool stays = variable.space == Space::frame && variable.section != Section::temp;
+            if (stays && variable.type && variable.slot != unplaced)
+                members.push_back({0, variable.slot, shape_number(w, *variable.type, made.is_s7)});
+        }
+    made.first = static_cast<std::uint32_t>(w.code.members.size());
+    made.count = static_cast<std::uint32_t>(members.size());
+    w.code.members.insert(w.code.members.end(), members.begin(), members.end());
+}
+
 void finish_shape(Writing& w, std::uint32_t number) {
     Shape made = w.code.shapes[number];
     const Type& type = *made.type;
@@ -218,6 +232,8 @@ void finish_shape(Writing& w, std::uint32_t number) {
     } else if (type.kind == Kind::structure) {
         made.kind = Shape::Kind::structure;
         add_members(w, made);
+    } else if (type.kind == Kind::block) {
+        add_variables(w, made);
     }
     if (type.kind == Kind::block && type.routine->base)
         made.base = shape_number(w, *type.routine->base->type) + 1;

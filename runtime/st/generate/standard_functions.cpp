@@ -70,6 +70,11 @@ struct Call : Emission {
         return w.emit(Op::and_bits, wanted, room, w.constant_slot(of_units - 1));
     }
     Slot reference(std::size_t i) override { return st::reference(w, given(i)); }
+    Slot moved(Slot reference, Slot bytes) override {
+        const Slot made = w.new_temporary(reference_slots);
+        w.put(Op::move_reference, made, reference, bytes);
+        return w.emit(Op::set_address, none, made);
+    }
     void put(Op op, Slot a, Slot b, Slot c, Slot d) override { w.put(op, a, b, c, d); }
     Slot constant(std::uint64_t bits) override { return w.constant_slot(bits); }
     void land() override { w.land(); }

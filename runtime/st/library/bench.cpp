@@ -13,13 +13,20 @@ namespace lineshaft::st {
 
 namespace {
 
-/// The statement in one line.
+/// The statement in one line; what stands in quotes as it is.
 std::string written(const Assertion& failed, Place at) {
     constexpr std::size_t longest = 100;
     std::string text;
+    char quote = 0;
+    bool is_escaped = false;
     for (const char c : at.text()) {
         const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-        if (!blank)
+        if (c == '\n' || (c == quote && !is_escaped))
+            quote = 0;
+        else if (quote == 0 && (c == '\'' || c == '"'))
+            quote = c;
+        is_escaped = quote != 0 && c == '$' && !is_escaped;
+        if (!blank || quote != 0)
             text += c;
         else if (!text.empty() && text.back() != ' ')
             text += ' ';
