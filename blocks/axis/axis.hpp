@@ -302,6 +302,7 @@ struct Axis {
     void place_direct_cam(const MotionState& leader, const MotionState& from, const Cam& table);
     MotionError turn_to_master(const Context& context, const MotionState& leader, const Cam& table);
     Cam cam(const Context& context) const;
+    Cam begun_anew(Cam table) const;
     void begin_phasing(const Context& context, Job& job);
 
     // axis_following.cpp: they are followed.

@@ -228,7 +228,7 @@ MotionError Axis::place_cam(const Context& context, const MotionState& leader,
                             const MotionState& from) {
     const Coupling& c = sync.coupling;
     const CamTableId id = CamTableId::of(c.cam);
-    const Cam table = WrittenCam::find(context, id);
+    const Cam table = begun_anew(WrittenCam::find(context, id));
     if (table.points.empty()) return MotionError::no_cam;
     const Axis& leading = context.seen_instance<Axis>(c.master.axis);
     const bool direct = c.start_mode == StartMode::direct;
@@ -260,7 +260,18 @@ void Axis::place_direct_cam(const MotionState& leader, const MotionState& from, 
 
 Cam Axis::cam(const Context& context) const {
     if (sync.law != Law::cammed) return {};
-    return WrittenCam::followed(context, CamTableId::of(sync.coupling.cam));
+    return begun_anew(WrittenCam::followed(context, CamTableId::of(sync.coupling.cam)));
+}
+
+/// On a modulo axis the slave is where it began by whole turns, too.
+Cam Axis::begun_anew(Cam table) const {
+    const Coupling& c = sync.coupling;
+    if (c.falls == 0 || table.points.empty()) return table;
+    table.falls = table.lift();
+    if (modulo && c.slave_scaling != 0)
+        table.falls -=
+            period * std::round(c.slave_scaling * table.lift() / period) / c.slave_scaling;
+    return table;
 }
 
 void Axis::begin_phasing(const Context& context, Job& job) {

@@ -52,6 +52,7 @@ struct Coupling {
     std::int64_t cam = 0;       ///< CamTableID
     StartMode start_mode = StartMode::absolute;
     std::int64_t stays = 0;  ///< not 0: behind the ends of a cam that is not periodic, too
+    std::int64_t falls = 0;  ///< not 0: a periodic cam begins anew where it began, not at its end
     double master_offset = 0, master_scaling = 1;  ///< cam's x = scaling * master + offset
     double slave_offset = 0, slave_scaling = 1;    ///< slave = scaling * cam(x) + offset
 

@@ -145,6 +145,9 @@ std::span<const Field> CamIn::fields() {
          coupled("StartMode", &C::start_mode, "", "of the slave").one_of(start_mode_names),
          input("StaysCoupled", &CamIn::stays_coupled, "",
                "of a cam that is not periodic: the slave stands beyond its ends, and comes back"),
+         input(
+             "Appends", &CamIn::appends, "",
+             "a periodic cam begins anew where it has ended, else where it began: the slave jumps"),
          source(), of_slave(pin::velocity()), of_slave(pin::acceleration()),
          of_slave(pin::deceleration()), of_slave(pin::jerk()), pin::buffer_mode()},
         pin::reached("InSync", "the slave is on the cam"),
@@ -156,6 +159,7 @@ std::span<const Field> CamIn::fields() {
 
 void CamIn::scan(const Scan& now, const Context& context) {
     pins.coupling.stays = stays_coupled ? 1 : 0;
+    pins.coupling.falls = appends ? 0 : 1;
     run(now, context);
     const Progress at = progress_of(job, context);
     start_sync = busy && at >= Progress::approaching;

@@ -36,7 +36,7 @@ struct GearInPos : CommandBlock {
 /// MC_CamIn: as MC_GearInPos, onto a cam. MasterSyncPosition is a position on the cam. A cam that
 /// is not periodic is executed once.
 struct CamIn : CommandBlock {
-    bool stays_coupled = false;
+    bool stays_coupled = false, appends = true;
     bool start_sync = false, end_of_profile = false;
     double ends = 0;  ///< of the profile, that have been shown
 

@@ -58,10 +58,11 @@ struct CamExtremes {
 struct Cam {
     std::span<const CamPoint> points;
     bool periodic = false;
+    double falls = 0;  ///< how much lower than at its end it begins anew: the slave jumps [u]
 
     double begin() const { return points.front().x; }
     double length() const { return points.back().x - points.front().x; }
-    double lift() const { return points.back().y - points.front().y; }
+    double lift() const { return points.back().y - points.front().y - falls; }
 
     /// How often the cam has been run through at x; 0 within it.
     double periods(double x) const;
