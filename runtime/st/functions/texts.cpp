@@ -36,6 +36,15 @@ struct Parts {
     Slot made = 0;
 };
 
+/// CODESYS: what is given to LEN is a STRING(255).
+Slot emit_length(Emission& e) {
+    const Slot text = e.text(0);
+    if (e.call.place.dialect().vendor != Vendor::codesys)
+        return e.result(Op::text_length, text, e.is_wide());
+    const Slot length = e.emit(Op::text_length, text, e.is_wide());
+    return e.result(Op::min_signed, length, e.constant(255));
+}
+
 Slot emit_concatenate(Emission& e) {
     Parts parts(e);
     std::vector<Slot> given{parts.in};
@@ -134,7 +143,7 @@ Slot emit_find(Emission& e) {
 /// INSERT leaves the text as it is if P is below 0 or behind its end, REPLACE if P is behind that.
 constexpr StandardFunction texts[] = {
     {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
-     [](Emission& e) { return e.result(Op::text_length, e.text(0), e.is_wide()); }},
+     emit_length},
     {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
      [](Emission& e) { return e.capacity(0); }},
     {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",
