@@ -85,7 +85,9 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
         if (is_unchecked) warn_of_check(c, e, to);
         return is_unchecked;
     }
-    warn_of_loss(c, e, to);
+    const bool is_told = changes_sign && mixes_signs && from.bits >= 32 &&
+                         dialect.vendor == Vendor::codesys;  // of its operands
+    if (!is_told) warn_of_loss(c, e, to);
     return true;
 }
 

@@ -70,6 +70,11 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
         e = number;
         return true;
     }
+    const bool counts = e->place.dialect().enumerations_are_numbers && !from.is_strict;
+    if (from.has_numbers && to.kind == Kind::real && counts) {
+        enumeration_becomes_number(c, e);
+        return coerce(c, e, to);
+    }
     if (!to.has_numbers || !from.is_integer()) return false;
     if (!is_constant(*e))
         return are_numbers && (to.is_unchecked || has_table_for(to)) && convert(c, e, to);

@@ -48,4 +48,13 @@ bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to) 
            all.has_signed && all.has_unsigned && all.width <= to.bits;
 }
 
+const Type* met_type(const Type& given_a, const Type& given_b, const Place& place) {
+    const Type &a = given_a.plain(), &b = given_b.plain();
+    const int bits = std::max(a.bits, b.bits);
+    const bool mixes_signs = a.kind == Kind::integer && b.kind == Kind::integer &&
+                             a.is_signed != b.is_signed && bits >= 32;
+    return mixes_signs && place.dialect().vendor == Vendor::codesys ? &integer_type(bits, true)
+                                                                    : common_type(a, b);
+}
+
 }  // namespace lineshaft::st

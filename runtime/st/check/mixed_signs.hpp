@@ -9,4 +9,8 @@ namespace lineshaft::st {
 /// SEL and their like give of both.
 bool narrows_mixed_signs(const Expression& e, const Type& from, const Type& to);
 
+/// What two types are reckoned in; null if there is nothing. Where one integer has a sign and the
+/// other has none, and one of them has 32 bits or more, CODESYS takes the signed one of the wider.
+const Type* met_type(const Type& a, const Type& b, const Place& place);
+
 }  // namespace lineshaft::st

@@ -1,15 +1,20 @@
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/mixed_signs.hpp"
 #include "runtime/st/check/nodes.hpp"
 
 namespace lineshaft::st {
+
+static bool is_of_codesys(const Place& place) {
+    return place.dialect().vendor == Vendor::codesys;
+}
 
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
     for (Expression*& operand : e.operands) {
         if (!operand) continue;
         const Type& type = operand->type->plain();
         if (type.kind != from) continue;
-        const bool wider =
-            expected && expected->kind == Kind::integer && expected->bits > type.bits;
+        const bool wider = expected && expected->kind == Kind::integer &&
+                           expected->bits > type.bits && !is_of_codesys(e.place);
         convert(c, operand,
                 from == Kind::integer ? bits_type(type.bits)
                 : wider               ? expected->plain()
@@ -44,7 +49,7 @@ bool make_concrete(Checking& c, Expression*& e, const Type& other) {
 
 namespace {
 
-/// A ULINT and a signed integer: CODESYS takes that for a ULINT.
+/// A ULINT and a signed integer: MatIEC takes that for a ULINT.
 bool mixes_signs_of_64(const Expression& e) {
     const Type &a = e.operands[0]->type->plain(), &b = e.operands[1]->type->plain();
     const bool are_integers = a.kind == Kind::integer && b.kind == Kind::integer;
@@ -70,9 +75,13 @@ const Type* wider_for(const Expression& constant, const Type& typed, const Type*
             if (holds(bits_type(bits))) return &bits_type(bits);
         return nullptr;
     }
-    const Type* const due = expected && expected->is_integer() ? &expected->plain() : &dint_type;
+    const bool is_codesys = is_of_codesys(constant.place),
+               is_due = expected && expected->is_integer();
+    const bool takes_sign = is_codesys && typed.plain().bits >= 32;
+    const Type* const due = is_due ? &expected->plain() : is_codesys ? &int_type : &dint_type;
     for (const Type* wider : {due, &dint_type, &lint_type})
-        if (holds(*wider) && widens(typed, *wider)) return wider;
+        if (holds(*wider) && (widens(typed, *wider) || (takes_sign && typed.bits == wider->bits)))
+            return wider;
     return nullptr;
 }
 
@@ -93,7 +102,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
                e.place.dialect().enumerations_are_numbers) {
         common = &lint_type;
     } else {
-        common = common_type(a, b);
+        common = met_type(a, b, e.place);
         if (!common && mixes_signs_of_64(e)) common = &ulint_type;
         const bool is_long = (takes_long_numbers(e, a.plain()) && b.plain().kind == Kind::real) ||
                              (takes_long_numbers(e, b.plain()) && a.plain().kind == Kind::real);

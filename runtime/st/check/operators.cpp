@@ -249,6 +249,14 @@ Nothing refuse_operands(Checking& c, const Expression& e, std::string help) {
                   std::move(help));
 }
 
+/// CODESYS: what is below 0 of a UDINT is a DINT, of a ULINT a LINT.
+static void take_sign(Checking& c, Expression*& operand) {
+    const Type& type = operand->type->plain();
+    const bool is_unsigned = type.kind == Kind::integer && !type.is_signed && type.bits >= 32;
+    if (is_unsigned && operand->place.dialect().vendor == Vendor::codesys)
+        convert(c, operand, integer_type(type.bits, true));
+}
+
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];
     const Type* type = check(c, operand, expected);
@@ -256,6 +264,7 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     if (e->op == Word::not_) take_bits_of_enumeration(c, operand);
     reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
     if (e->op == Word::not_) take_width(c, operand, expected);
+    if (e->op == Word::minus) take_sign(c, operand);
     type = operand->type;
     const bool fits = e->op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()
                                           : type->is_integer() || type->is_real() ||

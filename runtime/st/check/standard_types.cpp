@@ -1,6 +1,7 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/mixed_signs.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
@@ -19,13 +20,13 @@ const Type* mixed(const Type& a, const Type& b, const Type& real) {
 }
 
 /// Of a bit string and an integer: that of the numbers.
-const Type* common_number(const Type& a, const Type& b) {
+const Type* common_number(const Type& a, const Type& b, const Place& place) {
     const auto number = [](const Type& type) -> const Type& {
         return type.kind == Kind::bits ? integer_type(type.bits, false) : type;
     };
     const bool mixes =
         (a.kind == Kind::bits && b.is_integer()) || (a.is_integer() && b.kind == Kind::bits);
-    return mixes ? common_type(number(a), number(b)) : nullptr;
+    return mixes ? met_type(number(a), number(b), place) : nullptr;
 }
 
 const Type& real_for(const Type& type) {
@@ -172,8 +173,9 @@ const Type& number_type(const Type& type, const Type& other) {
 }
 
 /// What values of both types have in common; null if there is nothing. `real` as in `mixed`;
-/// `counts`: a bit string is a number among real ones.
-const Type* common_of(const Type& one, const Type& two, const Type& real, bool counts) {
+/// At `place` a bit string may be a number among real ones.
+const Type* common_of(const Type& one, const Type& two, const Type& real, const Place& place) {
+    const bool counts = place.dialect().bits_count_in_reals;
     const Type &a = number_type(one, two), &b = number_type(two, one);
     const Type* common = &a;
     if (counts && a.kind == Kind::bits && b.is_real() && !b.is_any()) return &b;
@@ -183,8 +185,8 @@ const Type* common_of(const Type& one, const Type& two, const Type& real, bool c
     else if (a.is_any() && (!b.is_any() || b.is_real()))
         common = &b;
     else if (!b.is_any() && !same_type(a, b) && a.is_scalar())
-        common = common_type(a, b);
-    return common ? common : common_number(a, b);
+        common = met_type(a, b, place);
+    return common ? common : common_number(a, b, place);
 }
 
 /// `b := MOVE(1);`: 0 and 1 are values of BOOL as well.
@@ -213,9 +215,8 @@ const Type& real_of_literals(const Expression& call, std::size_t first, const Ty
 const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
     const Type* common = &given_type(call, first);
     const Type& real = real_of_literals(call, first, expected);
-    const bool counts = call.place.dialect().bits_count_in_reals;
     for (std::size_t i = first + 1; i < call.arguments.size() && common; ++i)
-        common = common_of(*common, given_type(call, i), real, counts);
+        common = common_of(*common, given_type(call, i), real, call.place);
     if (!common)
         return c.fail(code::conversion_may_lose, call.place,
                       fmt::format("the arguments of {} have no common type", call.standard->name),

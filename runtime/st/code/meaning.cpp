@@ -33,8 +33,11 @@ constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
 std::uint64_t truth_of_text(const std::byte* from, bool is_strict) {
     const auto is_letter = [](char a, char b) { return upper(a) == b; };
-    const std::string_view text = text_at(from);
-    if (is_strict) return text == "TRUE" || text == "true" ? 1 : 0;
+    std::string_view text = text_at(from);
+    if (is_strict) {
+        text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+        return text.starts_with("TRUE") || text.starts_with("true") ? 1 : 0;
+    }
     return text == "1" || std::ranges::equal(text, std::string_view("TRUE"), is_letter) ? 1 : 0;
 }
 

@@ -272,7 +272,8 @@ T number_of_text(const std::byte* from, bool has_groups);
 std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
 double s7_real_of_text(const std::byte* from);
 
-/// Of 'TRUE' in any letters and of '1'; `is_strict`: of 'TRUE' and 'true' alone, as CODESYS has it.
+/// Of 'TRUE' in any letters and of '1'; `is_strict`: of what begins with 'TRUE' or 'true', behind
+/// blanks, too, as CODESYS has it.
 std::uint64_t truth_of_text(const std::byte* from, bool is_strict);
 
 /// TRUE or FALSE.

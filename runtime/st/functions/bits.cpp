@@ -5,6 +5,15 @@ namespace lineshaft::st {
 
 namespace {
 
+/// CODESYS: SHL and SHR by as many as a processor takes, which has registers of 32 or 64 bits.
+Slot places(Emission& e) {
+    const Slot n = e.value(1);
+    const Op op = e.call.standard->op;
+    const bool is_shift = op == Op::shl_8 || op == Op::shr_8;
+    if (!is_shift || e.call.place.dialect().vendor != Vendor::codesys) return n;
+    return e.emit(Op::and_bits, n, e.constant(e.type().bits == 64 ? 63 : 31));
+}
+
 /// What a signed integer becomes is that of its bits; only SHR keeps its sign.
 Slot emit_shift(Emission& e) {
     const Op first = e.call.standard->op;
@@ -12,7 +21,7 @@ Slot emit_shift(Emission& e) {
     int width = 0;
     while ((8 << width) < type.bits) ++width;
     const Op op = after(first, 4 * width);
-    const Slot a = e.value(0), n = e.value(1);
+    const Slot a = e.value(0), n = places(e);
     if (!type.is_signed) return e.result(op, a, n);
     if (first == Op::shr_8) return e.result(Op::shr_signed, a, n);
     const Slot pattern = e.emit(of_type(Op::wrap_sint, bits_type(type.bits)), a);

@@ -12,12 +12,15 @@ struct Parts {
 
     Slot sum(Slot a, Slot b) const { return e.emit(Op::add_lint, a, b); }
     Slot difference(Slot a, Slot b) const { return e.emit(Op::sub_lint, a, b); }
-    /// In SCL there is nothing to give where a number is not above `limit`.
-    void expect_above(std::int64_t limit, Slot number) {
-        if (!is_siemens) return;
+    /// There is nothing to give where a number is not above `limit`.
+    void need_above(std::int64_t limit, Slot number) {
         const Slot holds =
             e.emit(Op::lt_signed, e.constant(static_cast<std::uint64_t>(limit)), number);
         most = e.emit(Op::mul_lint, most, holds);
+    }
+    /// In SCL.
+    void expect_above(std::int64_t limit, Slot number) {
+        if (is_siemens) need_above(limit, number);
     }
     void begin() { made = e.new_text(); }
     void append(Slot from, Slot first, Slot count) const {
@@ -26,11 +29,21 @@ struct Parts {
     }
 
     Emission& e;
-    const bool is_siemens = e.call.place.dialect().vendor == Vendor::siemens;
+    const Vendor vendor = e.call.place.dialect().vendor;
+    const bool is_siemens = vendor == Vendor::siemens, is_codesys = vendor == Vendor::codesys;
     Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30), most = all;
     Slot in = e.text(0);
     Slot made = 0;
 };
+
+/// CODESYS: what is given to LEN is a STRING(255).
+Slot emit_length(Emission& e) {
+    const Slot text = e.text(0);
+    if (e.call.place.dialect().vendor != Vendor::codesys)
+        return e.result(Op::text_length, text, e.is_wide());
+    const Slot length = e.emit(Op::text_length, text, e.is_wide());
+    return e.result(Op::min_signed, length, e.constant(255));
+}
 
 Slot emit_concatenate(Emission& e) {
     Parts parts(e);
@@ -61,7 +74,7 @@ Slot emit_right(Emission& e) {
 Slot emit_middle(Emission& e) {
     Parts parts(e);
     const Slot count = e.value(1), place = e.value(2);
-    parts.expect_above(0, place);
+    if (parts.is_siemens || parts.is_codesys) parts.need_above(0, place);
     parts.begin();
     parts.append(parts.in, parts.difference(place, parts.one), count);
     return parts.made;
@@ -78,6 +91,15 @@ Slot emit_delete(Emission& e) {
     return parts.made;
 }
 
+/// `all` characters that CODESYS puts behind the first `before`; 0 where there are not so many, or
+/// not more.
+Slot taken_by_codesys(Parts& parts, Slot before, Op is_within) {
+    if (!parts.is_codesys) return parts.all;
+    Emission& e = parts.e;
+    const Slot length = e.emit(Op::text_length, parts.in, e.is_wide());
+    return e.emit(Op::mul_lint, parts.all, e.emit(is_within, before, length));
+}
+
 /// `taken` of `other`'s characters.
 Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count, Slot taken) {
     parts.expect_above(-1, count);
@@ -92,15 +114,19 @@ Slot emit_replaced(Parts& parts, Slot other, Slot before, Slot count, Slot taken
 Slot emit_insert(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), before = e.value(2);
-    return emit_replaced(parts, other, before, parts.zero, parts.all);
+    Slot taken = taken_by_codesys(parts, before, Op::le_signed);
+    if (parts.is_codesys)
+        taken = e.emit(Op::mul_lint, taken, e.emit(Op::le_signed, parts.zero, before));
+    return emit_replaced(parts, other, before, parts.zero, taken);
 }
 
 Slot emit_replace(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), count = e.value(2);
-    const bool is_matiec = e.call.place.dialect().vendor == Vendor::matiec;
-    return emit_replaced(parts, other, parts.difference(e.value(3), parts.one), count,
-                         is_matiec ? count : parts.all);
+    const Slot before = parts.difference(e.value(3), parts.one);
+    const Slot taken =
+        parts.vendor == Vendor::matiec ? count : taken_by_codesys(parts, before, Op::lt_signed);
+    return emit_replaced(parts, other, before, count, taken);
 }
 
 Slot emit_find(Emission& e) {
@@ -113,10 +139,11 @@ Slot emit_find(Emission& e) {
 // clang-format off
 /// Characters are counted from 1. A text that is made has at most 254, of CODESYS and
 /// TwinCAT 255. In SCL MID, DELETE, INSERT and REPLACE give an empty text if P is 0 (INSERT: below
-/// 0) or below, or L is below 0, as TIA Portal's help says.
+/// 0) or below, or L is below 0, as TIA Portal's help says. In CODESYS MID does if P is 0 or below;
+/// INSERT leaves the text as it is if P is below 0 or behind its end, REPLACE if P is behind that.
 constexpr StandardFunction texts[] = {
     {"LEN(IN: STRING): INT", "how many characters the text has", Typing::texts,
-     [](Emission& e) { return e.result(Op::text_length, e.text(0), e.is_wide()); }},
+     emit_length},
     {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
      [](Emission& e) { return e.capacity(0); }},
     {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",

@@ -31,21 +31,49 @@ bool is_arithmetic(const Expression& e) {
 }
 
 Op wide_op(Word op) {
-    return op == Word::plus    ? Op::add_lint
-           : op == Word::minus ? Op::sub_lint
-           : op == Word::times ? Op::mul_lint
-           : op == Word::mod_  ? Op::mod_lint
-                               : Op::div_lint;
+    return op == Word::plus    ? Op::add_dint
+           : op == Word::minus ? Op::sub_dint
+           : op == Word::times ? Op::mul_dint
+           : op == Word::mod_  ? Op::mod_dint
+                               : Op::div_dint;
 }
 
-bool may_be_divided_by_zero(const Expression& e) {
-    return (e.op == Word::divided || e.op == Word::mod_) && !e.operands[1]->type->is_real() &&
-           e.operands[1]->kind != E::constant;
+bool is_of_codesys(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::codesys;
+}
+
+bool is_standard(const Expression& e, std::string_view name) {
+    return e.kind == E::call && e.standard && same_name(e.standard->name, name);
+}
+
+bool is_logic(const Expression& e) {
+    return e.kind == E::binary && (e.op == Word::and_ || e.op == Word::or_ || e.op == Word::xor_);
+}
+
+/// What CODESYS has in a register of 32 bits, too: ABS, what SHL moves beyond the type, and what is
+/// joined with something wide.
+bool is_wide_in_codesys(const Writing& w, const Expression& e) {
+    if (!is_of_codesys(e)) return false;
+    if (is_logic(e)) return is_wide(w, *e.operands[0]) || is_wide(w, *e.operands[1]);
+    return is_standard(e, "abs") || is_standard(e, "shl");
 }
 
 /// What stands left of `later`, as wide_value() has it.
 Slot wide_value_before(Writing& w, const Expression& e, const Expression& later) {
     return is_wide(w, e) ? wide_value(w, e) : value_before(w, e, later);
+}
+
+Slot wide_shift(Writing& w, const Expression& e) {
+    const Expression &given = *e.arguments[0].value, &places = *e.arguments[1].value;
+    const Slot bits = wide_value_before(w, given, places);
+    const Slot count = w.emit(Op::and_bits, none, value(w, places), w.constant_slot(31));
+    const Slot made = w.emit(Op::shl_32, none, bits, count);
+    return e.type->is_signed ? w.emit(Op::wrap_dint, none, made) : made;
+}
+
+bool may_be_divided_by_zero(const Expression& e) {
+    return (e.op == Word::divided || e.op == Word::mod_) && !e.operands[1]->type->is_real() &&
+           e.operands[1]->kind != E::constant;
 }
 
 Slot unary(Writing& w, const Expression& e, Slot wanted) {
@@ -152,13 +180,22 @@ Slot reckon(Writing& w, const Expression& e, Slot a, Slot b, Slot wanted) {
     return w.emit(of_type(family, type), wanted, a, b);
 }
 
-/// 0 where the divisor is.
-Slot reckon_quotient(Writing& w, const Expression& e, Slot a, Slot b) {
+/// A quotient or a rest by 0 is 0, and not a fault.
+bool is_zero_by_zero(const Expression& e) {
+    const Dialect& dialect = e.place.dialect();
+    const bool is_zero_of_mod = dialect.vendor == Vendor::matiec || is_of_codesys(e);
+    return may_be_divided_by_zero(e) &&
+           (dialect.zero_divides_to_zero || (is_zero_of_mod && e.op == Word::mod_));
+}
+
+/// 0 where the divisor is; else what `reckon` gives, which may put it into the slot that it gets.
+template <class Reckon>
+Slot unless_by_zero(Writing& w, Slot b, Reckon reckon) {
     const Slot to = w.new_temporary();
     std::vector<std::uint32_t> end;
     w.put(Op::move, to, w.constant_slot(0));
     w.jump(Op::jump_unless, 0, b, end);
-    const Slot made = reckon(w, e, a, b, to);
+    const Slot made = reckon(to);
     if (made != to) w.put(Op::move, to, made);
     w.land(end);
     return to;
@@ -168,13 +205,12 @@ Slot binary(Writing& w, const Expression& e, Slot wanted) {
     if (e.op >= Word::less && e.op <= Word::unequal) return comparison(w, e, wanted);
     if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
     if (e.operands[0]->type->is_reference()) return reference_distance(w, e, wanted);
+    if (is_logic(e) && is_wide(w, e))
+        return w.emit(of_type(Op::wrap_sint, *e.type), wanted, wide_value(w, e));
     const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
     const Slot b = wide_value(w, *e.operands[1]);
-    const Dialect& dialect = e.place.dialect();
-    const bool is_zero_by_zero =
-        dialect.zero_divides_to_zero || (dialect.vendor == Vendor::matiec && e.op == Word::mod_);
-    return is_zero_by_zero && may_be_divided_by_zero(e) ? reckon_quotient(w, e, a, b)
-                                                        : reckon(w, e, a, b, wanted);
+    const auto made = [&](Slot to) { return reckon(w, e, a, b, to); };
+    return is_zero_by_zero(e) ? unless_by_zero(w, b, made) : made(wanted);
 }
 
 Slot bit(Writing& w, const Expression& e, Slot wanted) {
@@ -254,18 +290,25 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
 }
 
 bool is_wide(const Writing& w, const Expression& e) {
-    const bool is_whole = e.type && (e.type->kind == Kind::integer || e.type->is_bits());
-    if (!is_whole || e.type->bits >= 64 || w.options.overflow_faults) return false;
+    const bool is_narrow = e.type && (e.type->kind == Kind::integer || e.type->is_bits()) &&
+                           e.type->bits < e.place.dialect().reckons_in;
+    if (!is_narrow || w.options.overflow_faults) return false;
     if (e.kind == E::converted) return !e.conversion.is_written && is_wide(w, *e.operands[0]);
-    return is_arithmetic(e) && e.type->bits < e.place.dialect().reckons_in;
+    return is_arithmetic(e) || is_wide_in_codesys(w, e);
 }
 
 Slot wide_value(Writing& w, const Expression& e) {
     if (!is_wide(w, e)) return value(w, e);
     if (e.kind == E::converted) return wide_value(w, *e.operands[0]);
-    if (e.kind == E::unary) return w.emit(Op::neg_lint, none, wide_value(w, *e.operands[0]));
+    if (e.kind == E::unary) return w.emit(Op::neg_dint, none, wide_value(w, *e.operands[0]));
+    if (is_standard(e, "abs"))
+        return w.emit(Op::abs_signed, none, wide_value(w, *e.arguments[0].value));
+    if (e.kind == E::call) return wide_shift(w, e);
     const Slot a = wide_value_before(w, *e.operands[0], *e.operands[1]);
-    return w.emit(wide_op(e.op), none, a, wide_value(w, *e.operands[1]));
+    const Slot b = wide_value(w, *e.operands[1]);
+    if (is_logic(e)) return reckon(w, e, a, b, none);
+    const auto made = [&](Slot to) { return w.emit(wide_op(e.op), to, a, b); };
+    return is_zero_by_zero(e) ? unless_by_zero(w, b, made) : made(none);
 }
 
 void value_to(Writing& w, const Expression& e, Slot to) {

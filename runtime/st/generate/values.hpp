@@ -14,7 +14,7 @@ void update_timer(Writing& w, const Expression& read);
 
 /// Whether a whole number is beyond what its type holds, as CODESYS' dialect reckons.
 bool is_wide(const Writing& w, const Expression& e);
-/// A value as it is reckoned: in 64 bits, of what is not kept in its type before.
+/// A value as it is reckoned: in 32 bits, of what is not kept in its type before.
 Slot wide_value(Writing& w, const Expression& e);
 
 /// A value that stays what it is while `later` is computed: operands go from left to right.

@@ -55,7 +55,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .most_aligned = 8,
                          .text_length = 80,
                          .long_numbers_count_time = true,
-                         .reckons_in = 64,
+                         .reckons_in = 32,
                          .real_literals_are_lreal = true,
                          .loops_look_again = true,
                          .reals_leave_lowest_bits = true,
@@ -85,7 +85,6 @@ const Dialect matiec = [] {
     made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
     made.real_literals_are_lreal = made.reals_leave_lowest_bits = false;
     made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
-    made.reckons_in = 32;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;
     return made;

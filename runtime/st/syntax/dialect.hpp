@@ -48,7 +48,7 @@ struct Dialect {
     std::uint32_t text_length = 254;            ///< characters of a STRING without a length
     bool long_numbers_count_time = false;       ///< TIME_TO_LINT(T#1s) is 1000, else in ns
     std::uint8_t reckons_in = 0;  ///< bits, whole numbers that have fewer, until they are kept:
-                                  ///< 64 as on x64, 32 as C has it; else in their own
+                                  ///< 32 as C and CODESYS have it; else in their own
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
     bool real_literals_are_lreal = false;  ///< `i * 0.1` of an INT is an LREAL, else a REAL
     bool loops_look_again = false;         ///< FOR reads its limit and step in each pass, else once

@@ -297,8 +297,14 @@ class Lexer {
         add(Word::prefix);
         start_ = ++at_;
         if (find_called(date_prefixes, text) && is_digit(peek())) {
-            skip_while(
-                [](char c) { return is_digit(c) || c == '_' || c == '-' || c == ':' || c == '.'; });
+            const auto is_part = [](char c) {
+                return is_digit(c) || c == '_' || c == ':' || c == '.';
+            };
+            skip_while(is_part);
+            while (peek() == '-' && is_digit(peek(1))) {
+                ++at_;
+                skip_while(is_part);
+            }
             return void(add(Word::duration));
         }
         if (!find_called(time_prefixes, text)) return;
