@@ -501,7 +501,15 @@ def completion_offers_what_fits():
     on = Folder()
     text = on.client.texts[str(on.block)]
     on.client.change(on.block, text.replace("allowed := last;", "allowed := last;\ndelay.\nClamp(\nla"))
-    assert {"q", "et"} <= {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
+    names = {name.lower() for name in on.labels(on.block, "delay.\n", None, 6)}
+    assert names == {"in", "pt", "q", "et"}, names
+    on.client.change(on.block, text.replace("PT := T#1s", "PT := T#"))
+    assert on.labels(on.block, "PT := T#", None, 8) == []
+    better = text + "FUNCTION_BLOCK Better EXTENDS Limiter\nVAR own : INT; END_VAR\nown := 1;\nEND_FUNCTION_BLOCK\n"
+    on.client.change(on.block, better)
+    assert on.client.diagnosed(on.block) == []
+    on.client.change(on.block, better.replace("own := 1;", "own := 1; SUPER^."))
+    assert {"wanted", "allowed"} <= set(on.labels(on.block, "SUPER^.", None, 7))
     mover = text + "FUNCTION_BLOCK Mover\nVAR_IN_OUT axis : AXIS_REF; END_VAR\nVAR v : LREAL; END_VAR\nv := 1.0;\nEND_FUNCTION_BLOCK\n"
     on.client.change(on.block, mover)
     on.client.diagnosed(on.block)
@@ -571,6 +579,9 @@ def outline_folding_lenses_and_quick_fixes():
     assert [c["name"] for c in symbols[0]["children"]] == ["wanted", "allowed", "most", "delay", "last"]
     folds = {(f["startLine"], f["endLine"]) for f in on.client.ask("textDocument/foldingRange", document)}
     assert {(1, 11), (2, 4), (13, 16)} <= folds, folds
+    on.client.change(on.block, "TYPE P : STRUCT\nx : INT;\nEND_STRUCT END_TYPE\n" + on.client.texts[str(on.block)])
+    assert [f["endLine"] for f in on.client.ask("textDocument/foldingRange", document) if f["startLine"] == 0] == [2]
+    on.client.change(on.block, on.client.texts[str(on.block)].split("\n", 3)[3])
     program = {"textDocument": {"uri": uri_of(on.program)}}
     names = [s["name"] for s in on.client.ask("textDocument/documentSymbol", program)]
     assert names == ["lineshaft", "tasks", "sources", "inputs", "blocks", "outputs", "run"], names

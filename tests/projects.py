@@ -1741,6 +1741,17 @@ def check_suites_of_programs():
     assert all(f": {name}: counts\n" in listed for name in ("Called.group.suites[1]", "Called.group.suites[2]", "Beside.suite")), listed
 
 
+def check_failed_suites_of_a_run():
+    """Whoever runs or debugs suites as a program is told what `lineshaft test` tells: the user's line, what was expected, in which test."""
+    write("suites/suite.st", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nTEST('adds');\nAssertEquals_INT(Expected := 5, Actual := 2 + 2, Message := 'sum');\n"
+          "TEST_FINISHED();\nEND_FUNCTION_BLOCK\nPROGRAM Main\nVAR suite : Suite; END_VAR\nTcUnit.RUN();\nEND_PROGRAM\n")
+    write("suites/run.yaml", "lineshaft: 1\ntasks: {main: {every: 10 ms}}\nsources: [suite.st]\nblocks: {m: {type: Main, task: main}}\nrun: {for: 100 ms}\n")
+    told = run("run", "suites/run.yaml", code=3)
+    for part in "suites/suite.st:3:", "expected 5, found 4; sum", "in the test 'adds'", "(assertion)":
+        assert part in told, (part, told)
+    assert "at blocks/libraries" not in told, told
+
+
 def check_vendored_tcunit():
     """TcUnit's own sources stand beside the project that is tested by it: the library of that name runs the suites."""
     twincat("vendored/TcUnit", "POU", "FB_TestSuite", "FUNCTION_BLOCK FB_TestSuite\nVAR own : FB_OfFramework; END_VAR")
@@ -1929,6 +1940,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_called_programs()
     check_axes_of_suites()
     check_suites_of_programs()
+    check_failed_suites_of_a_run()
     check_vendored_tcunit()
     check_suites_of_lists()
     check_axes_that_are_referred_to()

@@ -41,7 +41,8 @@ class Probe {
 };
 
 /// Where an address leads, in a scan of the instance at `root`.
-inline std::byte* place_of(std::uint64_t address, std::byte* root, const Context& context) {
+template <class Byte>
+Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
     const std::uint64_t space = address >> 32;
     return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
 }

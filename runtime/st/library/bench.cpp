@@ -1,42 +1,13 @@
 #include "runtime/st/library/bench.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
 
-#include "runtime/st/types/value_text.hpp"
+#include "runtime/st/library/failed_assertion.hpp"
 
 namespace lineshaft::st {
-
-namespace {
-
-/// The statement in one line; what stands in quotes as it is.
-std::string written(const Assertion& failed, Place at) {
-    constexpr std::size_t longest = 100;
-    std::string text;
-    char quote = 0;
-    bool is_escaped = false;
-    for (const char c : at.text()) {
-        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-        if (c == '\n' || (c == quote && !is_escaped))
-            quote = 0;
-        else if (quote == 0 && (c == '\'' || c == '"'))
-            quote = c;
-        is_escaped = quote != 0 && c == '$' && !is_escaped;
-        if (!blank || quote != 0)
-            text += c;
-        else if (!text.empty() && text.back() != ' ')
-            text += ' ';
-    }
-    const bool is_call = text.ends_with(')');
-    if (text.size() > longest && is_call) text = text.substr(0, text.find('('));
-    return failed.part.empty() ? text : fmt::format("{} at {}", text, failed.part);
-}
-
-}  // namespace
 
 Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Told told,
              std::span<const KeptReference> kept)
@@ -44,8 +15,6 @@ Bench::Bench(const Compiled& made, const Options& options, const Type& unit, Tol
       options_(options),
       told_(std::move(told)),
       memory_(made.generated.images.at(&unit)) {
-    for (const Assertion& assertion : made.generated.assertions)
-        assertions_.emplace(assertion.instruction, &assertion);
     const std::vector<std::size_t> begins = lay_out(unit, kept);
     unit_ = reinterpret_cast<std::byte*>(memory_.data());
     for (const std::size_t begin : begins) places_.push_back(unit_ + begin);
@@ -110,10 +79,7 @@ std::vector<std::size_t> Bench::lay_out(const Type& unit, std::span<const KeptRe
 
 Bench::Bench(const Compiled& made, const Options& options, std::byte* unit, const Context& context,
              Told told)
-    : made_(made), options_(options), told_(std::move(told)), unit_(unit), context_(context) {
-    for (const Assertion& assertion : made.generated.assertions)
-        assertions_.emplace(assertion.instruction, &assertion);
-}
+    : made_(made), options_(options), told_(std::move(told)), unit_(unit), context_(context) {}
 
 TestResult Bench::run(const CodeRoutine& routine, std::byte* instance) {
     return run_on(routine, instance, 0);
@@ -188,100 +154,12 @@ bool Bench::let_pass(std::int64_t time, std::int64_t interval) {
 }
 
 bool Bench::ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) {
-    const Assertion& assertion = *assertions_.at(instruction);
-    frame_ = frame;
-    TestResult result = failed(assertion, made_.generated.code.instructions[instruction],
-                               called_at(assertion.place, depth));
+    TestResult result = failed_assertion(
+        made_, root_, context_,
+        {static_cast<std::uint32_t>(instruction), static_cast<std::uint32_t>(depth), frame});
     const bool ends = told_(result);
     if (ends) ended_ = std::move(result);
     return ends;
-}
-
-const std::byte* Bench::place(std::uint64_t address) {
-    return place_of(address, root_, context_);
-}
-
-std::string_view Bench::text_at(std::uint64_t address) {
-    const std::byte* first = place(address);
-    return {reinterpret_cast<const char*>(first + 8),
-            static_cast<std::size_t>(read<std::uint64_t>(first))};
-}
-
-/// Of the frame that the assertion stands in.
-std::uint64_t Bench::word(std::uint64_t slot) {
-    return read<std::uint64_t>(place(frame_ + slot));
-}
-
-std::string Bench::value(const Type& type, std::uint32_t slot) {
-    if (type.kind == Type::Kind::text) return text_literal(text_at(word(slot)));
-    return value_text(type, word(slot));
-}
-
-/// Of an assertion in a library the call of what it stands in.
-Place Bench::called_at(Place assertion, std::uint64_t depth) {
-    const Code& code = made_.generated.code;
-    const std::byte* calls = root_ + 8 * std::size_t{code.calls_slot()};
-    Place at = assertion;
-    while (at.source->is_library() && depth > 0)
-        at = code.places[read<std::uint64_t>(calls + 16 * --depth) - 1];
-    return at;
-}
-
-TestResult Bench::failed(const Assertion& assertion, const Instruction& stop, Place at) {
-    TestResult result;
-    result.mark = at.mark();
-    result.failure = fmt::format("{}: {}", written(assertion, at), what(assertion, stop));
-    const auto* behind = &stop + 1;
-    if (assertion.has_message && !text_at(word(behind->a)).empty())
-        result.failure += "; " + printable(text_at(word(behind->a)));
-    return result;
-}
-
-std::string Bench::what(const Assertion& failed, const Instruction& stop) {
-    const auto found = [&] { return value(*failed.found, stop.a); };
-    const auto wanted = [&] { return value(*failed.wanted, stop.b); };
-    switch (failed.call) {
-        case TestCall::assert_true:
-            return fmt::format("expected TRUE, found {}", found());
-        case TestCall::assert_false:
-            return fmt::format("expected FALSE, found {}", found());
-        case TestCall::assert_neq:
-            return fmt::format("expected another value than {}", found());
-        case TestCall::assert_gt:
-            return fmt::format("expected more than {}, found {}", wanted(), found());
-        case TestCall::assert_lt:
-            return fmt::format("expected less than {}, found {}", wanted(), found());
-        case TestCall::assert_ge:
-            return fmt::format("expected at least {}, found {}", wanted(), found());
-        case TestCall::assert_le:
-            return fmt::format("expected at most {}, found {}", wanted(), found());
-        case TestCall::assert_near:
-            return distance(failed, stop);
-        case TestCall::mock_verify_called:
-            return "expected a call, found none";
-        case TestCall::mock_verify_call_count:
-            return fmt::format("expected {} call{}, found {}", word(stop.b),
-                               word(stop.b) == 1 ? "" : "s", word(stop.a));
-        default:
-            break;
-    }
-    const auto exact = [&](std::uint32_t slot) { return std::bit_cast<double>(word(slot)); };
-    const bool hides_digits =
-        wanted() == found() && failed.found->is_real() && std::isfinite(exact(stop.a));
-    if (!hides_digits) return fmt::format("expected {}, found {}", wanted(), found());
-    return fmt::format("expected {}, found {}", exact(stop.b), exact(stop.a));
-}
-
-std::string Bench::distance(const Assertion& failed, const Instruction& stop) {
-    const Type& type = *failed.found;
-    const auto shown = [&](std::uint64_t slot) {
-        const double real = std::bit_cast<double>(word(slot));
-        if (type.is_real()) return value_text(type, word(slot));
-        if (type.kind == Type::Kind::time) return time_literal(static_cast<std::int64_t>(real));
-        return fmt::format("{}", real);
-    };
-    return fmt::format("expected {} within {}, found {}", shown(stop.b), shown(stop.c),
-                       shown(stop.a));
 }
 
 }  // namespace lineshaft::st

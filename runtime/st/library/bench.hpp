@@ -57,19 +57,10 @@ class Bench : Witness {
     TestResult run_on(const CodeRoutine& routine, std::byte* instance, std::uint64_t frame);
     bool ends_at(std::uint64_t instruction, std::uint64_t frame, std::uint64_t depth) override;
     bool let_pass(std::int64_t time, std::int64_t interval) override;
-    const std::byte* place(std::uint64_t address);
-    std::string_view text_at(std::uint64_t address);
-    std::uint64_t word(std::uint64_t slot);
-    std::string value(const Type& type, std::uint32_t slot);
-    Place called_at(Place assertion, std::uint64_t depth);
-    TestResult failed(const Assertion& assertion, const Instruction& stop, Place at);
-    std::string what(const Assertion& failed, const Instruction& stop);
-    std::string distance(const Assertion& failed, const Instruction& stop);
 
     const Compiled& made_;
     const Options& options_;
     Told told_;
-    std::unordered_map<std::uint64_t, const Assertion*> assertions_;  ///< by their instruction
     std::vector<std::uint64_t> memory_;  ///< of the unit, the data blocks and objects, what is kept
     std::vector<std::byte*> places_;
     std::vector<BlockType> sizes_;         ///< of what is no block of the catalogue: its size alone
@@ -81,7 +72,6 @@ class Bench : Witness {
     Scan now_of_objects_{};
     std::unordered_map<const Type*, std::vector<std::uint64_t>> callers_;  ///< of parts that run
     std::byte* root_ = nullptr;  ///< the instance that runs, or the caller of the part that does
-    std::uint64_t frame_ = 0;    ///< address of the one with the last assertion that did not hold
     TestResult ended_;           ///< by the last one
 };
 

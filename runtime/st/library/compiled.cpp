@@ -81,6 +81,13 @@ void make_native(Code& code, const Options& options) {
     if (options.native && !code.times) code.native = native_code(code);
 }
 
+Place place_of_user(const Code& code, const std::byte* root, const EndOfScan& end, Place at) {
+    const std::byte* calls = root + 8 * std::size_t{code.calls_slot()};
+    for (std::uint32_t depth = end.depth; !at.source->is_users() && depth > 0;)
+        at = code.places[read<std::uint64_t>(calls + 16 * std::size_t{--depth}) - 1];
+    return at;
+}
+
 FaultPlace fault_of(const Code& code, const std::byte* instance) {
     const auto slot = [&](std::uint32_t number) {
         return read<std::uint64_t>(instance + 8 * std::size_t{number});
@@ -96,7 +103,7 @@ FaultPlace fault_of(const Code& code, const std::byte* instance) {
         found.left = code.pieces[slot(code.left_slot()) - 1].name;
     const EndOfScan end = EndOfScan::of(slot(place_slot), slot(depth_slot));
     std::uint64_t at = end.instruction;
-    found.mark = place(at);
+    found.mark = place_of_user(code, instance, end, code.places[at]).mark();
     const std::uint32_t stack = code.calls_slot();
     const std::uint64_t depth = end.depth;
     constexpr std::uint64_t most_told = 20;  // the first ones and the last one

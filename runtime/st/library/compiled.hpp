@@ -33,6 +33,10 @@ std::vector<NameUse> understand(Compiled& to, const Catalog& standard,
 /// Makes the processor's code of it, where the options want that and nothing is counted.
 void make_native(Code& code, const Options& options);
 
+/// A place in what comes with lineshaft is where the user's source calls that, in a scan of `root`
+/// that ended so; else it is itself.
+Place place_of_user(const Code& code, const std::byte* root, const EndOfScan& end, Place at);
+
 /// Where the last execution on an instance ended with a fault.
 FaultPlace fault_of(const Code& code, const std::byte* instance);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/model/kept_state.hpp"
+#include "runtime/st/library/failed_assertion.hpp"
 #include "runtime/st/library/retained.hpp"
 #include "runtime/st/types/elementary.hpp"
 
@@ -88,6 +89,7 @@ std::string why(const std::byte* block, const Context& context, const NameOf&) {
         fmt::format("at {}:{}:{}", found.mark.file->path, found.mark.line, found.mark.column);
     for (std::size_t i = 0; i < found.calls.size(); ++i)
         text += (i == 0 ? " in " : ", called by ") + found.calls[i];
+    if (found.fault == Fault::assertion) text += ": " + text_of_failure(*kind.made, block, context);
     if (found.fault == Fault::outside_of_variable)
         text += fmt::format(", which left the variable '{}'", found.left);
     if (found.fault == Fault::call_has_ended)
@@ -306,6 +308,7 @@ std::size_t element_slots(const Type& array) {
 KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
                       const Options& options) {
     KindContext& kind = made.kinds.emplace_back();
+    kind.made = &made;
     kind.code = &made.generated.code;
     kind.options = options;
     kind.name = std::move(name);

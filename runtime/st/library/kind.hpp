@@ -11,7 +11,8 @@ namespace lineshaft::st {
 
 /// What the blocks of a kind share.
 struct KindContext {
-    const Code* code = nullptr;
+    const Compiled* made = nullptr;
+    const Code* code = nullptr;            ///< of it
     const CodeRoutine* routine = nullptr;  ///< null: a data block
     bool is_looked_at = false;             ///< before a scan
     const std::uint64_t* image = nullptr;

@@ -10,6 +10,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/st/library/bench.hpp"
 #include "runtime/st/library/kind.hpp"
+#include "runtime/st/library/suites_state.hpp"
 #include "runtime/st/syntax/cursor.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
@@ -17,7 +18,6 @@ namespace lineshaft::st {
 
 namespace {
 
-constexpr std::string_view state_name = "TcUnit.GVL_TcUnit";
 constexpr std::int64_t longest = 600'000'000'000;  // [ns] of virtual time
 
 const Routine* base_suite(const Routine* block) {
@@ -35,18 +35,6 @@ struct Suite {
     std::size_t slot = 0;
     bool is_done = false;
 };
-
-/// What a test is at some moment; its number is that of its place among all.
-struct Entry {
-    std::int64_t suite = 0;
-    std::string name;
-    bool finished = false, skipped = false;
-};
-
-const Variable* find(std::span<Variable* const> variables, std::string_view name) {
-    const auto* found = find_called(variables, name, &Variable::text);
-    return found ? *found : nullptr;
-}
 
 /// An AXIS_REF of a call, which has no axis: nobody could give it one.
 const Variable* reference_of_call(const Routine& routine) {
@@ -103,13 +91,13 @@ class Suites {
 
     std::vector<SuiteTest> run(std::int64_t cycle) {
         bench_.set_cycle(cycle);
-        set("is_watched", 1);
+        state_.set("is_watched", 1);
         for (std::int64_t number = 0; bench_.time() < longest && !is_interrupted(); ++number) {
-            set("cycle", number);
-            set("suite", 0);
+            state_.set("cycle", number);
+            state_.set("suite", 0);
             fault_ = scan_programs();
             if (!fault_.failure.empty()) break;
-            if (get("run_mode") > 0) call_suites();
+            if (state_.get("run_mode") > 0) call_suites();
             if (std::ranges::all_of(suites_, &Suite::is_done)) break;
             bench_.advance();
         }
@@ -165,44 +153,16 @@ class Suites {
             .routines[static_cast<std::size_t>(it - made_.checked.order.begin())];
     }
 
-    /// Of a part of what the library keeps.
-    std::byte* place(std::string_view name, const Variable** variable = nullptr) {
-        const Variable& state = *find(made_.checked.globals.front().type->members, state_name);
-        const Variable* found = find(state.type->members, name);
-        if (variable) *variable = found;
-        return bench_.global(0) + 8 * std::size_t{state.slot + found->slot};
-    }
-    std::int64_t get(std::string_view name) { return read<std::int64_t>(place(name)); }
-    void set(std::string_view name, std::int64_t value) {
-        std::memcpy(place(name), &value, sizeof value);
-    }
-
-    Entry entry(std::int64_t number) {
-        const Variable* tests = nullptr;
-        const std::byte* first = place("tests", &tests);
-        const Type& type = *tests->type->element;
-        const std::byte* at =
-            first + 8 * element_slots(*tests->type) * static_cast<std::size_t>(number - 1);
-        const auto part = [&](std::string_view name) {
-            return at + 8 * std::size_t{find(type.members, name)->slot};
-        };
-        const std::byte* name = part("name");
-        return {read<std::int64_t>(part("suite")),
-                {reinterpret_cast<const char*>(name + 8), read<std::uint64_t>(name)},
-                read<std::uint64_t>(part("finished")) != 0,
-                read<std::uint64_t>(part("skipped")) != 0};
-    }
-
     /// In sequence one is called in a cycle, and a cycle goes by between two.
     void call_suites() {
-        const bool in_sequence = get("run_mode") == 2;
+        const bool in_sequence = state_.get("run_mode") == 2;
         if (in_sequence && std::exchange(pauses_, false)) return;
         for (std::size_t i = 0; i < suites_.size() && !is_interrupted(); ++i) {
             Suite& suite = suites_[i];
             if (suite.is_done) continue;
             if (watch_.at_work) watch_.at_work(suite.name);
-            set("suite", static_cast<std::int64_t>(i) + 1);
-            set("test", 0);
+            state_.set("suite", static_cast<std::int64_t>(i) + 1);
+            state_.set("test", 0);
             TestResult result = bench_.run_part(code_of(*suite.block), *suite.block->type,
                                                 suite.global, suite.slot);
             if (result.failure.starts_with("the fault no_reference"))
@@ -217,8 +177,8 @@ class Suites {
     /// The numbers of its tests that are not finished.
     std::vector<std::int64_t> open_tests(std::size_t suite) {
         std::vector<std::int64_t> open;
-        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
-            const Entry test = entry(i);
+        for (std::int64_t i = 1; i <= state_.get("number_of_tests"); ++i) {
+            const SuitesState::Test test = state_.test(i);
             const bool is_its = test.suite == static_cast<std::int64_t>(suite) + 1;
             if (is_its && !test.finished && !test.skipped) open.push_back(i);
         }
@@ -226,7 +186,7 @@ class Suites {
     }
 
     bool tell(TestResult result) {
-        failed_.emplace(get("test"), std::move(result));
+        failed_.emplace(state_.get("test"), std::move(result));
         return false;
     }
 
@@ -256,8 +216,8 @@ class Suites {
 
     std::vector<SuiteTest> results() {
         std::vector<SuiteTest> tests;
-        for (std::int64_t i = 1; i <= get("number_of_tests"); ++i) {
-            const Entry test = entry(i);
+        for (std::int64_t i = 1; i <= state_.get("number_of_tests"); ++i) {
+            const SuitesState::Test test = state_.test(i);
             const Suite& suite = suites_[static_cast<std::size_t>(test.suite) - 1];
             SuiteTest& made = tests.emplace_back();
             made.test = {fmt::format("{}: {}", suite.name, test.name),
@@ -282,6 +242,7 @@ class Suites {
     const Routine& program_;
     const SuitesWatch& watch_;
     Bench bench_;
+    SuitesState state_{made_, bench_.global(0)};
     std::vector<std::pair<const Routine*, std::ptrdiff_t>>
         beside_;  ///< programs, and their globals
     std::vector<Suite> suites_;

@@ -118,9 +118,11 @@ const st::Variable* Completion::find_variable(std::string_view name) const {
 const st::Type* Completion::type_of(const std::vector<std::string>& chain) const {
     if (chain.empty()) return nullptr;
     const st::Type* type = nullptr;
-    if (st::same_name(chain[0], "this") && routine) {
-        const st::Routine& block = routine->owner ? *routine->owner : *routine;
-        type = block.type;
+    const st::Routine* block = routine && routine->owner ? routine->owner : routine;
+    if (block && st::same_name(chain[0], "this")) {
+        type = block->type;
+    } else if (block && block->base && st::same_name(chain[0], "super")) {
+        type = block->base->type;
     } else if (const st::Variable* first = find_variable(chain[0])) {
         type = plain(first->type);
     } else {
@@ -164,7 +166,9 @@ void Completion::add_members(const st::Type& type, Offer& to) const {
             for (const auto& [name, method] : *known)
                 to.add(name, Kind::method, signature_of(*method));
     }
-    for (const st::Variable* member : type.members) to.add(*member, Kind::field);
+    for (const st::Variable* member : type.members)
+        if (type.kind != st::Type::Kind::standard || member->section != st::Section::local)
+            to.add(*member, Kind::field);
     if (type.kind == st::Type::Kind::handle)
         for (const lineshaft::Field& field : type.standard->fields)
             to.add(field.name, Kind::field, std::string(field.unit), std::string(field.doc));
@@ -269,7 +273,8 @@ Json complete_structured_text(Session& session, const Asked& where) {
     if (begin > 0 && (where.text[begin - 1] == '.' || where.text[begin - 1] == '#')) {
         const st::Type* type = at.type_of(chain_before(where.text, begin - 1));
         if (type) at.add_members(*type, offer);
-        if (type || where.text[begin - 1] == '.') return offer.take();
+        const bool is_literal = begin > 1 && is_letter(where.text[begin - 2]);  // `T#`
+        if (type || is_literal || where.text[begin - 1] == '.') return offer.take();
     }
     if (const auto call = call_around(where.text, begin); call && call->name.empty()) {
         const auto chain = chain_before(where.text, without_blanks(where.text, call->open));

@@ -136,8 +136,9 @@ Json structured_folds(const Session& session, const Asked& where, const Text& te
     const st::Tokens all = st::read_tokens(source_of(where), untold, st::SourceKind::tests);
     Json folds = Json::array();
     const auto add = [&](std::size_t begin, std::size_t end, bool is_comment) {
-        if (Json made = fold(session, text, begin, end, is_comment); !made.is_null())
-            folds.push_back(std::move(made));
+        Json made = fold(session, text, begin, end, is_comment);
+        const bool is_new = !made.is_null() && std::ranges::find(folds, made) == folds.end();
+        if (is_new) folds.push_back(std::move(made));  // TYPE and its STRUCT may be the same lines
     };
     std::vector<const st::Token*> open;
     for (const st::Token& token : all.tokens) {
