@@ -173,7 +173,7 @@ const Type& number_type(const Type& type, const Type& other) {
 }
 
 /// What values of both types have in common; null if there is nothing. `real` as in `mixed`;
-/// At `place` a bit string may be a number among real ones.
+/// at `place` a bit string may be a number among real ones.
 const Type* common_of(const Type& one, const Type& two, const Type& real, const Place& place) {
     const bool counts = place.dialect().bits_count_in_reals;
     const Type &a = number_type(one, two), &b = number_type(two, one);
