@@ -401,8 +401,7 @@ std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
     std::vector<SuiteEntry> entries;
     for (const auto& text : texts_of_tests(file)) {
         Diagnostics out;
-        const auto suite = compile_text(tests, text, out);
-        if (suite)
+        if (const auto suite = compile_text(tests, text, out))
             run_suite(tests, *suite, options, entries);
         else
             entries.push_back(wrong(file->path, out.render()));
