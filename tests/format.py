@@ -59,6 +59,26 @@ def check_tree(folder):
     return count, changed, refused
 
 
+def links_stay():
+    """A link is none of the files that are written: what it leads to is, with its permissions. One that leads to itself is told."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        real, link, ring = folder / "real.st", folder / "link.st", folder / "ring.st"
+        real.write_text("PROGRAM Main\nVAR x:INT; END_VAR\nx:=1;\nEND_PROGRAM\n", encoding="utf-8")
+        real.chmod(0o640)
+        link.symlink_to("real.st")
+        assert run("format", link).returncode == 0
+        assert link.is_symlink() and "x : INT" in real.read_text(encoding="utf-8") and real.stat().st_mode & 0o777 == 0o640
+        ring.symlink_to("ring.st")
+        for command in (["format", folder], ["check", folder], ["format", ring], ["check", ring]):
+            answer = run(*command)
+            assert answer.returncode == 2 and "Too many levels of symbolic links" in answer.stderr and "filesystem error" not in answer.stderr, (command, answer)
+        answer = run("test", folder)
+        assert answer.returncode in (1, 2) and "Too many levels" in answer.stdout + answer.stderr and "filesystem error" not in answer.stderr, answer
+        (folder / "empty").mkdir()
+        assert run("format", folder / "empty").returncode == 2
+
+
 def main():
     assert in_style("FUNCTION_BLOCK a\nVAR x,y:INT ;END_VAR\nIF x>1 AND(y<-2) THEN\nx:=f( 1,y [ 2 ] );  // so\nELSE\ny := 1;\n\n\n"
                     "END_IF\nCASE x OF\n1,2 : y:=1;\n3:\nx:=2;\nELSE\nx:=3;\nEND_CASE;\nEND_FUNCTION_BLOCK\n") == \
@@ -77,6 +97,7 @@ def main():
         path.write_text("FUNCTION_BLOCK a\nVAR x : INT; END_VAR\n{IF defined(FOO)}\nx := 1;\n{END_IF}\nx := 2;\nEND_FUNCTION_BLOCK\n", encoding="utf-8")
         answer = run("format", path)
         assert answer.returncode == 2 and "left_out.st:4" in answer.stdout + answer.stderr, answer
+    links_stay()
     total = [0, 0, 0]
     with tempfile.TemporaryDirectory() as folder:
         for part in "programs", "tests/st", "tests/st_tests", "tests/cases":

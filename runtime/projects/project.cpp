@@ -24,6 +24,7 @@
 #include "runtime/projects/twincat.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/entries.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/st/library/binary_libraries.hpp"
@@ -240,11 +241,10 @@ bool is_source(const fs::path& file) {
 
 std::vector<std::string> sources_below(const std::string& folder, std::error_code& error) {
     std::vector<std::string> files;
-    std::error_code unknown;
     constexpr auto options = fs::directory_options::skip_permission_denied;
     for (fs::recursive_directory_iterator entry(folder, options, error), end;
          !error && entry != end; entry.increment(error))
-        if (is_source(entry->path()) && !is_apax(entry->path()) && entry->is_regular_file(unknown))
+        if (is_source(entry->path()) && !is_apax(entry->path()) && is_file_to_read(*entry))
             files.push_back(entry->path().string());
     std::erase_if(files, is_test_file);
     if (!std::ranges::all_of(files, has_name_of_any_text))

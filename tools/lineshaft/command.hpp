@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "runtime/model/catalog.hpp"
@@ -47,6 +49,22 @@ struct CommonOptions {
 /// Prints what is wrong, else what is warned of, as a compiler does on stderr, or as JSON on
 /// stdout. Exit::wrong, or Exit::interrupted when reading was.
 Exit report(const Diagnostics& diagnostics, bool json);
+
+/// One of a few words, for Option::transform.
+template <class Value>
+CLI::Validator one_of(const std::map<std::string, Value>& values) {
+    return CLI::Validator(
+        [values](std::string& word) {
+            const auto it = values.find(word);
+            std::vector<std::string> words;
+            for (const auto& [each, value] : values) words.push_back(each);
+            if (it == values.end())
+                return fmt::format("'{}' is none of {}", word, fmt::join(words, ", "));
+            word = std::to_string(static_cast<int>(it->second));
+            return std::string();
+        },
+        "");
+}
 
 /// `--strict`: warnings are errors.
 void add_strict(CLI::App& command, bool& strict);

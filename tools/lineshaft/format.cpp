@@ -1,15 +1,18 @@
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
 #include "runtime/projects/project.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/entries.hpp"
 #include "runtime/st/syntax/style.hpp"
+#include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
 
 namespace lineshaft {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -19,25 +22,29 @@ struct FormatCommand {
 };
 
 std::vector<std::string> sources_in(const std::string& path) {
-    namespace fs = std::filesystem;
-    if (!fs::is_directory(path)) return {path};
+    std::error_code unknown;
+    if (!fs::is_directory(path, unknown)) return {path};
     std::vector<std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(path))
-        if (entry.is_regular_file() && is_structured_text(entry.path()))
+        if (is_file_to_read(entry) && is_structured_text(entry.path()))
             files.push_back(entry.path().lexically_normal().string());
     std::ranges::sort(files);
     return files;
 }
 
-/// Beside the file first, so that it is never half-written.
+/// A link stays one, and what it leads to keeps its permissions.
 bool write_file(const std::string& path, const std::string& text) {
-    const std::string beside = path + ".new";
-    std::ofstream file(beside, std::ios::binary);
-    file << text;
-    file.close();
-    std::error_code error;
-    if (file) std::filesystem::rename(beside, path, error);
-    return file && !error;
+    std::error_code unknown;
+    const fs::path target =
+        fs::is_symlink(path, unknown) ? fs::canonical(path, unknown) : fs::path(path);
+    OutputFile file(target.string());
+    file.write(text);
+    if (file.error().empty())
+        fs::permissions(file.part(), fs::status(target, unknown).permissions(), unknown);
+    if (file.commit()) return true;
+    spdlog::error("{}", file.error());
+    file.discard();
+    return false;
 }
 
 Exit format(const std::string& path, bool check) {
@@ -59,10 +66,7 @@ Exit format(const std::string& path, bool check) {
     if (*styled == file->text) return Exit::fine;
     if (check) fmt::print("{} is not in the style\n", path);
     if (check) return Exit::failed;
-    if (!write_file(path, *styled)) {
-        spdlog::error("{} cannot be written", path);
-        return Exit::fault;
-    }
+    if (!write_file(path, *styled)) return Exit::fault;
     fmt::print("{}\n", path);
     return Exit::fine;
 }
@@ -76,9 +80,13 @@ void add_format(CLI::App& app, Exit& result) {
     sub->add_option("files", command->files, "Files, and folders of them")->required();
     sub->add_flag("--check", command->check, "Only say which are not in the style; exit code 1");
     sub->callback([command, &result] {
-        for (const std::string& path : command->files)
-            for (const std::string& file : sources_in(path))
+        for (const std::string& path : command->files) {
+            const std::vector<std::string> found = sources_in(path);
+            if (found.empty()) spdlog::error("'{}' has no Structured Text", path);
+            if (found.empty()) result = std::max(result, Exit::wrong);
+            for (const std::string& file : found)
                 result = std::max(result, format(file, command->check));
+        }
     });
 }
 

@@ -144,6 +144,10 @@ std::string wrong_command_line(const CLI::App& app, const CLI::Error& error) {
 }
 
 /// The exit code.
+std::string cannot_print(int error) {
+    return fmt::format("cannot write to the standard output: {}", std::strerror(error));
+}
+
 int run_command(int argc, char** argv) {
     using namespace lineshaft;
     set_up_messages();
@@ -179,7 +183,7 @@ int run_command(int argc, char** argv) {
             "is slower; --no-native says so from the start");
     if (std::fflush(stdout) != 0) {
         if (is_unread()) return static_cast<int>(Exit::unread);
-        spdlog::error("cannot write to the standard output: {}", std::strerror(errno));
+        spdlog::error("{}", cannot_print(errno));
         return static_cast<int>(Exit::fault);
     }
     return static_cast<int>(result);
@@ -196,6 +200,11 @@ int main(int argc, char** argv) {
         return run_command(argc, argv);
     } catch (const std::bad_alloc&) {
         std::fputs(out_of_memory, stderr);
+    } catch (const std::system_error& error) {
+        if (lineshaft::is_unread()) return static_cast<int>(lineshaft::Exit::unread);
+        const bool is_print = std::string_view(error.what()).starts_with("cannot write to file");
+        std::fprintf(stderr, "lineshaft: error: %s\n",
+                     is_print ? cannot_print(error.code().value()).c_str() : error.what());
     } catch (const std::exception& error) {
         if (lineshaft::is_unread()) return static_cast<int>(lineshaft::Exit::unread);
         std::fprintf(stderr, "lineshaft: error: %s\n", error.what());

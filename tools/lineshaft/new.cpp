@@ -79,7 +79,8 @@ Exit execute(const NewCommand& command) {
         return Exit::fault;
     }
     if (!command.quiet)
-        fmt::print("{0}: a program that runs; try: lineshaft run {0}{1}\n", path.string(), option);
+        fmt::print("{}: a program that runs; try: lineshaft run {}{}\n", path.string(),
+                   shell_word(path.string()), option);
     return Exit::fine;
 }
 

@@ -377,16 +377,6 @@ std::string path_from(const std::filesystem::path& file, const std::string& path
         .string();
 }
 
-std::string quoted(const std::string& word) {
-    const bool is_plain = std::ranges::all_of(word, [](char c) {
-        return is_letter(c) || is_digit(c) || std::string_view("_-./").find(c) != std::string::npos;
-    });
-    if (is_plain) return word;
-    std::string made = "'";
-    for (const char c : word) made += c == '\'' ? "'\\''" : std::string(1, c);
-    return made + "'";
-}
-
 /// Of several the one that has tasks, or that no other is built on.
 std::optional<WholeProject> chosen_project(const std::string& path, Diagnostics& out) {
     std::vector<WholeProject> all = read_projects(path, {}, out);
@@ -426,13 +416,23 @@ std::string dialect_text() {
 
 }  // namespace
 
+std::string shell_word(const std::string& word) {
+    const bool is_plain = std::ranges::all_of(word, [](char c) {
+        return is_letter(c) || is_digit(c) || std::string_view("_-./").find(c) != std::string::npos;
+    });
+    if (is_plain) return word;
+    std::string made = "'";
+    for (const char c : word) made += c == '\'' ? "'\\''" : std::string(1, c);
+    return made + "'";
+}
+
 std::string include_option(const std::string& project, const std::filesystem::path& program) {
     Diagnostics unread;
     if (resolve_path(path_from(program, project), program.string(), {}, {}, unread)) return {};
     std::error_code error;
     std::filesystem::path folder = std::filesystem::absolute(project).lexically_normal();
     if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
-    return " --include-dir " + quoted(folder.string());
+    return " --include-dir " + shell_word(folder.string());
 }
 
 std::string program_around(const std::string& path, const std::filesystem::path& file,

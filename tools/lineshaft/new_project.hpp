@@ -13,6 +13,9 @@ namespace lineshaft {
 std::string program_around(const std::string& project, const std::filesystem::path& program,
                            Diagnostics& out);
 
+/// A word as a shell takes it.
+std::string shell_word(const std::string& word);
+
 /// ` --include-dir FOLDER`, which the program around a project needs that lies outside of its own
 /// one; empty for one that does not.
 std::string include_option(const std::string& project, const std::filesystem::path& program);

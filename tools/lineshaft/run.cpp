@@ -101,11 +101,11 @@ void add_style(CLI::App& sub, CsvStyle& style) {
     static const std::map<std::string, bool> dialects{{"rfc4180", false}, {"excel-de", true}};
     sub.add_option("--names", style.names,
                    "Column names: dot (shaft.position), slash (PlotJuggler's tree) or snake")
-        ->transform(CLI::CheckedTransformer(names).description("dot|slash|snake"));
+        ->transform(one_of(names).description("dot|slash|snake"));
     sub.add_flag("--units", style.units, "Units in the header: shaft.position [mm]");
     sub.add_option("--dialect", style.excel_de,
                    "rfc4180, or excel-de: semicolons and decimal commas")
-        ->transform(CLI::CheckedTransformer(dialects).description("rfc4180|excel-de"));
+        ->transform(one_of(dialects).description("rfc4180|excel-de"));
 }
 
 /// L0509 for what else would go to the standard output.
@@ -337,7 +337,7 @@ void RunCommand::add_to(CLI::App& sub) {
     sub.add_option("--restart", restart,
                    "cold: all initial values; warm: retained ones kept; hot: go on from the "
                    "checkpoint")
-        ->transform(CLI::CheckedTransformer(restarts).description(""))
+        ->transform(one_of(restarts))
         ->type_name("cold|warm|hot");
     sub.add_flag("--resume", resume, "Short for --restart hot");
     sub.add_option("--checkpoint", checkpoint,

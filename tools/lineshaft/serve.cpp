@@ -205,7 +205,7 @@ void add_serve(CLI::App& app, Exit& result) {
     sub->add_option("--late", command->late,
                     "When a scan is a whole interval late: catch_up, the next ones follow at once; "
                     "skip, the clock is put off")
-        ->transform(CLI::CheckedTransformer(ways).description(""))
+        ->transform(one_of(ways))
         ->type_name("catch_up|skip");
     sub->add_option("--realtime", command->realtime,
                     "Run before all other programs: SCHED_FIFO at this priority, memory locked")

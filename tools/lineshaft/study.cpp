@@ -248,7 +248,7 @@ void add_study(CLI::App& app, Exit& result) {
                        ->excludes("--merge");
     const std::map<std::string, bool> which{{"all", false}, {"failed", true}};
     sub->add_option("--traces-of", command->traces.of_failed, "all cases, or failed ones only")
-        ->transform(CLI::CheckedTransformer(which).description("all|failed"))
+        ->transform(one_of(which).description("all|failed"))
         ->needs(traces);
     sub->add_option("--report", command->report,
                     "Write a page, too: tables, and the traces of --traces laid over each other")

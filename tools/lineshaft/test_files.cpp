@@ -14,6 +14,7 @@
 #include "runtime/run/single_run.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/entries.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/suites.hpp"
 #include "runtime/st/library/test_suite.hpp"
@@ -29,6 +30,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
+bool is_folder(const fs::path& path) {
+    std::error_code unknown;
+    return fs::is_directory(path, unknown);
+}
+
 bool is_yaml(const fs::path& path) {
     return path.extension() == ".yaml";
 }
@@ -36,10 +42,10 @@ bool is_yaml(const fs::path& path) {
 /// All files below a folder, or in it, of which `wanted` is true, sorted; of a file that file.
 template <class Wanted>
 std::vector<std::string> files_of(const std::string& path, bool below, Wanted wanted) {
-    if (!fs::is_directory(path)) return {path};
+    if (!is_folder(path)) return {path};
     std::vector<std::string> files;
     const auto take = [&](const fs::directory_entry& entry) {
-        if (entry.is_regular_file() && wanted(entry.path()))
+        if (is_file_to_read(entry) && wanted(entry.path()))
             files.push_back(entry.path().lexically_normal().string());
     };
     constexpr auto options = fs::directory_options::skip_permission_denied;
@@ -120,7 +126,7 @@ std::shared_ptr<const st::SourcePool> sources_for(const std::string& path,
         add_sources(*pool, package.string(), true);
         for (const fs::path& beside : projects::packages_beside(package))
             add_sources(*pool, (beside / "src").string(), true);
-    } else if (fs::is_directory(path)) {
+    } else if (is_folder(path)) {
         add_sources(*pool, path, true);
     } else if (is_of_project(path)) {
         for (const auto& source : project_of(path).sources) pool->add(source);
@@ -395,8 +401,7 @@ std::vector<SuiteEntry> test_structured_text(const TestFile& tests,
     std::vector<SuiteEntry> entries;
     for (const auto& text : texts_of_tests(file)) {
         Diagnostics out;
-        const auto suite = compile_text(tests, text, out);
-        if (suite)
+        if (const auto suite = compile_text(tests, text, out))
             run_suite(tests, *suite, options, entries);
         else
             entries.push_back(wrong(file->path, out.render()));
@@ -420,7 +425,7 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
     const auto pool = sources_for(path, sources);
     for (const std::string& file : files_of(path, true, can_be_tested))
         tests.push_back({.path = file, .sources = pool, .is_named = file == path});
-    if (!fs::is_directory(path)) return tests;
+    if (!is_folder(path)) return tests;
     std::error_code unread;
     std::vector<std::string> folders = sources;
     folders.push_back(path);
@@ -434,8 +439,7 @@ std::vector<TestFile> find_tests(const std::string& path, const std::vector<std:
 }
 
 bool has_forms(const std::string& folder) {
-    std::error_code error;
-    return fs::is_directory(folder, error) && !files_of(folder, true, is_form).empty();
+    return is_folder(folder) && !files_of(folder, true, is_form).empty();
 }
 
 std::vector<std::shared_ptr<const SourceFile>> texts_of_tests(
