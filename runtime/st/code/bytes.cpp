@@ -286,11 +286,7 @@ bool make_zero(const Code& code, std::uint32_t number, std::byte* slots) {
     if (type.kind == Type::Kind::standard) return make_standard_zero(type, slots);
     std::uint64_t first = 0;
     if (type.kind == Type::Kind::handle) first = ~first;
-    if (shape.kind == Shape::Kind::scalar) {
-        const auto value = value_of(type, 0);
-        if (!value) return false;
-        first = *value;
-    }
+    if (shape.kind == Shape::Kind::scalar && !is_value(type, 0)) return false;
     std::memset(slots, 0, 8 * shape.slots);
     set_slot(slots, first);
     return true;
