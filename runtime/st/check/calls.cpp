@@ -214,7 +214,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
             is_open_array(variable) ||
             (variable.section == Section::input && !routine.has_instances() &&
              (!by_name || !call.place.dialect().named_inputs_may_be_left_out) && !variable.initial);
-        if (!due || call.action || variable.bound_of ||
+        if (!due || call.operands[1] || variable.bound_of ||
             std::ranges::find(given, &variable) != given.end())
             continue;
         const bool may_miss = c.is_in_test() && routine.has_instances();
@@ -309,7 +309,7 @@ void note_call(Checking& c, const Expression& call, Routine& called) {
 void check_call_of_action(Checking& c, Expression*& e, Routine& block) {
     e->routine = &block;
     check_arguments(c, e, block);
-    check_call(c, e->action, true, nullptr);
+    check_call(c, e->operands[1], true, nullptr);
 }
 
 const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, bool as_statement) {
@@ -318,7 +318,7 @@ const Type* check_instance_call(Checking& c, Expression*& e, const Type& type, b
                       "call it as a statement of its own, then take an output: name.Q");
     if (type.kind == Kind::block) {
         const Expression& instance = *e->operands[0];
-        if (e->action) return check_call_of_action(c, e, *type.routine), nullptr;
+        if (e->operands[1]) return check_call_of_action(c, e, *type.routine), nullptr;
         if (type.routine->pou->is_class)
             return c.fail(code::wrong_place, e->place,
                           fmt::format("{} is a CLASS, and has no body", type.name),

@@ -59,6 +59,11 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
 /// have their own types already, and become what the function takes.
 const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected);
 
+// reference_calls.cpp
+
+/// What MEMCPY and its like are given, and the type of what they give.
+const Type* check_memory(Checking& c, Expression& call, const Type* expected);
+
 // extreme_texts.cpp
 
 /// MIN, MAX and LIMIT of texts, which have their types: choices of texts stand for the call then.

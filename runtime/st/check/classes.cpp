@@ -247,12 +247,6 @@ void check_abstract(Checking& c, const Routine& block) {
            "write these methods, or make the block ABSTRACT");
 }
 
-const Routine* own_block(const Checking& c) {
-    if (!c.routine) return nullptr;
-    const Routine* block = c.routine->owner ? c.routine->owner : c.routine;
-    return block->type && !block->pou->is_tests ? block : nullptr;
-}
-
 std::string_view namespace_of(const Routine& block) {
     const std::size_t point = block.name.rfind('.');
     return std::string_view(block.name).substr(0, point == std::string::npos ? 0 : point);
@@ -265,6 +259,12 @@ bool is_within_namespace(std::string_view path, std::string_view outer) {
 }
 
 }  // namespace
+
+const Routine* own_block(const Checking& c) {
+    if (!c.routine) return nullptr;
+    const Routine* block = c.routine->owner ? c.routine->owner : c.routine;
+    return block->type && !block->pou->is_tests ? block : nullptr;
+}
 
 void resolve_bases(Checking& c) {
     for (Routine& routine : c.checked.routines) {

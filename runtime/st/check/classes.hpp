@@ -15,6 +15,9 @@ void check_classes(Checking& c);
 /// Tells where the type is that of a block without instances.
 void refuse_abstract(Checking& c, const Type* type, Place place);
 
+/// The block that the routine at hand is, or is of; null: it is none, as in a TEST.
+const Routine* own_block(const Checking& c);
+
 /// THIS or SUPER; null: it is none. `e` means the instance then.
 bool is_own_instance(Checking& c, const Expression& e);
 const Type* check_own_instance(Checking& c, Expression*& e);

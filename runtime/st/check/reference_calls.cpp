@@ -1,4 +1,6 @@
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
+#include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -6,6 +8,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/types.hpp"
+#include "runtime/st/functions/standard.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {
@@ -106,6 +109,32 @@ std::optional<const Type*> check_reference_call(Checking& c, Expression*& e, con
     if (is("sizeof") || is("xsizeof")) return check_size(c, e);
     if (is("__isvalidref")) return check_is_bound(c, e);
     return check_refer(c, e, is("adr") ? Referring::pointer : Referring::ref);
+}
+
+const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
+    const StandardFunction& f = *call.standard;
+    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
+        Expression*& value = call.arguments[i].value;
+        if (f.parameter(i).type == Generic::pointer) {
+            if (value->type->is_pointer()) continue;
+            if (holds_address(*value->type)) {
+                coerce(c, value, pointer_to(c, bits_type(8)));
+                continue;
+            }
+            return c.fail(code::type_does_not_fit, value->place,
+                          fmt::format("{} takes a POINTER, not {}", f.name, describe(*value->type)),
+                          "write ADR(...) of a variable");
+        }
+        become_number(c, value);
+        if (!value->type->is_integer() && !value->type->is_bits())
+            return c.fail(code::type_does_not_fit, value->place,
+                          fmt::format("expected a whole number, found {}", describe(*value->type)));
+        if (value->type->is_any() && !coerce(c, value, lint_type)) return nullptr;
+    }
+    if (f.result == Generic::pointer) return &pointer_to(c, bits_type(8));
+    if (f.result != Generic::any_int) return &dint_type;
+    return expected && expected->kind == Kind::integer ? &expected->plain()
+                                                       : &integer_type(32, false);
 }
 
 }  // namespace lineshaft::st

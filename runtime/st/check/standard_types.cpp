@@ -436,32 +436,6 @@ const Type* check_wanted(Checking& c, Expression*& e, const Type* expected) {
     return check_conversion(c, e, c.checked.names.emplace_back(name)).value_or(nullptr);
 }
 
-const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
-    const StandardFunction& f = *call.standard;
-    for (std::size_t i = 0; i < call.arguments.size(); ++i) {
-        Expression*& value = call.arguments[i].value;
-        if (f.parameter(i).type == Generic::pointer) {
-            if (value->type->is_pointer()) continue;
-            if (holds_address(*value->type)) {
-                coerce(c, value, pointer_to(c, bits_type(8)));
-                continue;
-            }
-            return c.fail(code::type_does_not_fit, value->place,
-                          fmt::format("{} takes a POINTER, not {}", f.name, describe(*value->type)),
-                          "write ADR(...) of a variable");
-        }
-        become_number(c, value);
-        if (!value->type->is_integer() && !value->type->is_bits())
-            return c.fail(code::type_does_not_fit, value->place,
-                          fmt::format("expected a whole number, found {}", describe(*value->type)));
-        if (value->type->is_any() && !coerce(c, value, lint_type)) return nullptr;
-    }
-    if (f.result == Generic::pointer) return &pointer_to(c, bits_type(8));
-    if (f.result != Generic::any_int) return &dint_type;
-    return expected && expected->kind == Kind::integer ? &expected->plain()
-                                                       : &integer_type(32, false);
-}
-
 const Type* check_operation(Checking& c, Expression*& e, const Type* expected) {
     for (Argument& argument : e->arguments) keep_width(c, argument.value);
     Expression* joined = join(c, *e, e->standard->word);

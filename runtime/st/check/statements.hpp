@@ -13,6 +13,14 @@ void check(Checking& c, Statement*& s);
 /// `target := value;`; `+=` is one of a sum. L0910 for what may not be assigned.
 void check_assignment(Checking& c, Statement*& s);
 
+// action_calls.cpp
+
+/// `Turn;` of an ACTION becomes its call; another name alone does nothing.
+void check_action(Checking& c, Statement*& s);
+/// `motor.Turn(speed := 5, done => stands);` of an ACTION gives the block's inputs and what its
+/// VAR_IN_OUT refer to, runs it, and takes the block's outputs. False: it is another call.
+bool runs_with_pins(Checking& c, Statement*& s);
+
 // rewrites.cpp
 
 /// A statement that means others, `y := f(EN := go)` or SCATTER, is checked as those, which are

@@ -406,9 +406,9 @@ void call_instance(Writing& w, const Expression& e) {
     const Expression& callee = *e.operands[0];
     const Type& type = *callee.type;
     const Location frame = on_frame(w, locate(w, callee));
-    if (e.action) {
+    if (e.operands[1]) {
         const std::vector<Lent> lent = give(w, frame, e, *type.routine);
-        call_routine(w, *e.action);
+        call_routine(w, *e.operands[1]);
         return take(w, frame, e, lent);
     }
     if (e.is_dispatched || (type.kind == Kind::block && may_meet_itself(w, e))) {

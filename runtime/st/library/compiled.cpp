@@ -27,15 +27,20 @@ void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const So
     std::set<const BlockType*> used;
     LibraryNames libraries(standard, to.libraries);
     for (const auto& source : to.sources) {
-        for (const Diagnostic& mistake : source->mistakes) out.add(mistake);
+        Diagnostics own, follows;
+        for (const Diagnostic& mistake : source->mistakes) {
+            own.add(mistake);
+            out.add(mistake);
+        }
+        Diagnostics& told = own.empty() ? out : follows;  // what could not be read is left out
         const bool is_tests = source.get() == tests;
         Tokens tokens =
-            read_tokens(source, out, is_tests ? SourceKind::tests : SourceKind::program);
+            read_tokens(source, told, is_tests ? SourceKind::tests : SourceKind::program);
         uses_standard = uses_standard || uses_standard_source(tokens);
         libraries.note_libraries(tokens);
         for (const BlockType& type : standard.types())
             if (uses_source_of(type, tokens)) used.insert(&type);
-        parse(std::move(tokens), to.tree, out);
+        parse(std::move(tokens), to.tree, told);
     }
     to.tree.leave_lost_out();
     join_declared_apart(to.tree);

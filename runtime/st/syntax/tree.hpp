@@ -59,7 +59,7 @@ struct Expression {
         member,  ///< operands[0] . name
         index,   ///< operands[0] [arguments]
         bit,     ///< operands[0] . %X3, .%B1, .3
-        call,    ///< operands[0] (arguments)
+        call,    ///< operands[0] (arguments); of an ACTION's call operands[1] runs for the body
         unary,
         binary,
         typed,      ///< `INT#5`, `Colour#red`: token.text # operands[0]
@@ -91,7 +91,6 @@ struct Expression {
     const StandardFunction* standard = nullptr;  ///< that a call calls
     const BlockType* called_as = nullptr;  ///< a call: of an IEC_TIMER, which is any of the timers
     Expression* initial = nullptr;         ///< what it is to all of `a, b : INT := 2 + 3`
-    Expression* action = nullptr;  ///< a call: of an instance's ACTION, run instead of its body
 
     TestCall test = TestCall::none;  ///< the statement of tests that a call is
 

@@ -239,8 +239,9 @@ TEST_CASE("mistakes are bounded") {
 TEST_CASE("values that a column's type does not have are told") {
     CHECK(read_text("a_on\n2\n1\n", {}, sidecar).said.find("'2' in column 'a_on'") !=
           std::string::npos);
-    CHECK(read_text("a.state\n2\n1\n", {}, sidecar).said.find("'2' in column") !=
+    CHECK(read_text("a.state\noff\n1\n", {}, sidecar).said.find("'off' in column") !=
           std::string::npos);
+    CHECK(values(read_text("a.state\n2\n1\n", {}, sidecar), "a.state") == Values{2, 1});
     CHECK(read_text("a.n\n1.5\n1\n", {}, sidecar).said.find("'1.5' in column") !=
           std::string::npos);
 }
