@@ -1,5 +1,3 @@
-#include "runtime/st/check/statements.hpp"
-
 #include <algorithm>
 
 #include "runtime/st/check/classes.hpp"
@@ -7,6 +5,7 @@
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 
