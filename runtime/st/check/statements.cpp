@@ -207,8 +207,9 @@ bool narrows(Checking& c, Expression*& first, const Type& type) {
 }
 
 /// Over the values of an enumeration: `FOR number := first TO last DO target := number; ...`. What
-/// no value of one that is strict has is the fault of that assignment.
-void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
+/// no value of one that is strict has is the fault of that assignment. Gives what is left to do
+/// behind the loop: of one that is not strict its variable is then beyond the last value.
+Statement* rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
     Variable& number = c.make_variable(*c.routine, slot->target->token, "FOR", &lint_type);
     Statement* loop = make_with(c, *slot, slot->value);
     loop->limit = slot->limit;
@@ -216,11 +217,15 @@ void rewrite_for_of_values(Checking& c, Statement*& slot, const Type& type) {
     for (Expression** bound : {&loop->value, &loop->limit})
         if (check(c, *bound, &type)) enumeration_becomes_number(c, *bound);
     loop->target = make_use(c, *slot->target, number);
-    Expression* value = make_use(c, *slot->target, number);
-    convert(c, value, type);
-    loop->body = {make_assignment(c, slot->target->place, slot->target, value)};
+    const auto take_number = [&, target = slot->target] {
+        Expression* value = make_use(c, *target, number);
+        convert(c, value, type);
+        return make_assignment(c, target->place, target, value);
+    };
+    loop->body = {take_number()};
     loop->body.insert(loop->body.end(), slot->body.begin(), slot->body.end());
     slot = loop;
+    return type.is_unchecked ? take_number() : nullptr;
 }
 
 /// A counter of CODESYS that ends at a limit of its type is never beyond it.
@@ -239,8 +244,9 @@ void note_endless(Checking& c, const Statement& s, const Type& type) {
 
 void check_for(Checking& c, Statement*& slot) {
     const Type* type = check(c, slot->target);
+    Statement* behind = nullptr;
     if (type && type->has_numbers && slot->place.dialect().enumerations_are_numbers) {
-        rewrite_for_of_values(c, slot, *type);
+        behind = rewrite_for_of_values(c, slot, *type);
         type = check(c, slot->target);
     }
     Statement& s = *slot;
@@ -262,6 +268,9 @@ void check_for(Checking& c, Statement*& slot) {
     ++c.loops;
     check(c, s.body);
     --c.loops;
+    if (!behind) return;
+    check(c, behind);
+    slot = make_sequence(c, slot->place, {slot, behind});
 }
 
 }  // namespace
