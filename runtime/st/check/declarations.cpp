@@ -250,9 +250,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         if (is_lent || (variable->space == Space::frame && (!is_of_test || is_array)))
             refuse_object(c, *declared, type);
         if (!is_lent) refuse_abstract(c, type, declared->name.place);
-        const bool is_own = is_lent && routine.owner && type == routine.owner->type;
-        const bool is_only_named =
-            is_own || is_another || (routine.is_prototype() && type && type->kind == Kind::block);
+        const bool is_only_named = (is_of_own && (is_lent || is_another)) ||
+                                   (routine.is_prototype() && type && type->kind == Kind::block);
         if (!is_only_named) depend(c, type, declared->name.place);
         locate_in_image(c, *variable, *declared);
         const bool has_memory =
