@@ -252,7 +252,8 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool own = !target.operands[0] || target.operands[0]->kind == E::self;
     const bool of_instance =
         !own && target.operands[0]->type && target.operands[0]->type->is_instance();
-    if (variable->constant && !(c.is_in_test() && of_instance))
+    const bool is_own_copy = variable->section == Section::input && target.place.dialect().is_loose;
+    if (variable->constant && !is_own_copy && !(c.is_in_test() && of_instance))
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
     const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
                                           variable->of->kind == PouKind::method);
