@@ -225,6 +225,11 @@ static bool is_tag_of_axis(const Expression& target) {
     return of->kind == E::call && of->routine && of->routine->name.starts_with("AXIS_REF.");
 }
 
+static bool inherits(const Routine* block, const Variable& variable) {
+    while (block && block->pou != variable.of) block = block->base;
+    return block;
+}
+
 bool check_target(Checking& c, Expression& target, std::string_view how) {
     const auto refuse = [&](std::string what, std::string help) {
         return c.fail(code::cannot_be_assigned, target.place,
@@ -252,7 +257,8 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool own = !target.operands[0] || target.operands[0]->kind == E::self;
     const bool of_instance =
         !own && target.operands[0]->type && target.operands[0]->type->is_instance();
-    if (variable->constant && !(c.is_in_test() && of_instance))
+    const bool is_own_copy = variable->section == Section::input && target.place.dialect().is_loose;
+    if (variable->constant && !is_own_copy && !(c.is_in_test() && of_instance))
         return refuse(fmt::format("the constant '{}'", variable->text), "remove CONSTANT");
     const bool is_copy = variable->of && (variable->of->kind == PouKind::function ||
                                           variable->of->kind == PouKind::method);
@@ -271,8 +277,10 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool is_local = variable->section == Section::local;
     const bool is_public = is_local && (variable->access == Access::public_ ||  // 6.6.5.10
                                         (is_library(target.token) && of && !is_block));
+    const bool is_inherited =
+        is_local && target.place.dialect().is_loose && inherits(own_block(c), *variable);
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
-        is_named && !is_siemens_own && !is_public)
+        is_named && !is_siemens_own && !is_public && !is_inherited)
         return refuse(
             fmt::format("'{}' of {}",
                         variable->space == Space::global ? target.token.text : variable->text,

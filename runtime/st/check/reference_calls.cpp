@@ -15,6 +15,13 @@ namespace lineshaft::st {
 
 namespace {
 
+/// A function's name stands for its result.
+const Type* resolve_sized(Checking& c, const Token& name) {
+    const Routine* function = c.find_routine(name);
+    return function && !function->type && function->result ? function->result->type
+                                                           : resolve_name(c, name);
+}
+
 const Type* check_size(Checking& c, Expression*& e) {
     if (e->of) {
         const Type* written = resolve(c, *e->of);
@@ -26,7 +33,7 @@ const Type* check_size(Checking& c, Expression*& e) {
     const Token name = qualified ? *qualified : of->token;
     const bool is_type =
         (qualified || of->kind == E::name) && !find_variable(c, name) && !is_own_instance(c, *of);
-    const Type* type = is_type ? resolve_name(c, name) : check(c, of);
+    const Type* type = is_type ? resolve_sized(c, name) : check(c, of);
     if (!type) return nullptr;
     return become(c, e, any_integer_type, {.integer = Wide{bytes_of(*type)}});
 }

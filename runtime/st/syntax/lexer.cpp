@@ -256,7 +256,9 @@ class Lexer {
         if (new_line_ && is_title(text_, at_, text)) return add(Word::name), skip_to_end_of_line();
         const bool is_variable = word == Word::region_ && (!new_line_ || is_declared_or_assigned());
         const bool is_part = after_dot && !new_line_;  // else somebody is about to write it
-        if (!word || is_part || is_variable) return void(add(Word::name));
+        const bool is_foreign =
+            word == Word::goto_ && tokens_.source->dialect.vendor == Vendor::codesys;  // it has JMP
+        if (!word || is_part || is_variable || is_foreign) return void(add(Word::name));
         add(*word);
         if (word == Word::region_ || word == Word::end_region_) skip_to_end_of_line();  // a title
     }

@@ -123,23 +123,42 @@ Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
     return condition;
 }
 
-/// IF_Stmt : 'IF' Assigned 'THEN' Stmt_List ( 'ELSIF' Expression 'THEN' Stmt_List ) *
+/// The condition of an ELSIF. What it assigns is assigned where those above are not fulfilled, so
+/// it is the IF of an ELSE then, which it makes the one at hand.
+void parse_else_if(Parsing& p, Statement*& at_hand) {
+    Block assigned;
+    p.before = &assigned;
+    p.targets.assign(1, p.at);
+    const Token first = p.here();
+    Branch branch;
+    branch.condition = parse_condition(p, Word::then_, "after the condition");
+    if (!assigned.empty()) {
+        at_hand->body = std::move(assigned);
+        at_hand->body.push_back(p.make(Statement::Kind::if_, first));
+        at_hand = at_hand->body.back();
+    }
+    at_hand->branches.push_back(std::move(branch));
+}
+
+/// IF_Stmt : 'IF' Assigned 'THEN' Stmt_List ( 'ELSIF' Assigned 'THEN' Stmt_List ) *
 ///           ( 'ELSE' Stmt_List ) ? 'END_IF'
 void parse_if(Parsing& p, Statement& statement) {
     const Token opener = p.take();
     const std::size_t else_ifs = p.else_ifs.size();
-    do {
-        Branch branch;
-        branch.condition = parse_condition(p, Word::then_, "after the condition");
+    Statement* at_hand = &statement;
+    statement.branches.emplace_back().condition =
+        parse_condition(p, Word::then_, "after the condition");
+    for (;;) {
         if (p.panic) skip_to_statement(p);
-        parse_statements(p, branch.body, Word::end_if_);
-        statement.branches.push_back(std::move(branch));
-    } while (p.accept(Word::elsif_));
+        parse_statements(p, at_hand->branches.back().body, Word::end_if_);
+        if (!p.accept(Word::elsif_)) break;
+        parse_else_if(p, at_hand);
+    }
     if (p.is(Word::else_)) {
         const Token word = p.take();
         if (p.is(Word::if_) && !p.here().first_in_line)
             p.else_ifs.push_back(word.place.to(p.here().place));
-        parse_statements(p, statement.body, Word::end_if_);
+        parse_statements(p, at_hand->body, Word::end_if_);
     }
     close(p, Word::end_if_, opener);
     p.else_ifs.resize(else_ifs);
