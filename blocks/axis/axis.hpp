@@ -461,8 +461,8 @@ bool keeps_superimposed(const Request& request);
 bool is_synchronous(Command command);
 bool is_phasing(Command command);
 
-/// Whether an axis takes it up while its group moves it.
-bool is_taken_in_group(Command command);
+/// Whether an axis takes it up while its group moves it. By what moves the axis it leaves the path.
+bool is_taken_in_group(const Request& request);
 
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);

@@ -33,7 +33,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
             return change(context, at, *running, job);
     if (is_end(job.progress)) return;
     const Request& request = job.request;
-    if (follows_group() && !is_taken_in_group(request.command))
+    if (follows_group() && !is_taken_in_group(request))
         return tell(job, Progress::failed, MotionError::axis_in_group);
     if (state == AxisState::stopping && request.command == Command::stop &&
         (active.place == place || takes_over_stop(request)))
@@ -60,7 +60,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
         return tell(job, Progress::waiting);
     }
     if (waits) return wait(context, at, job);
-    begin(context, at, job);
+    begin(context, follows_group() ? Moment{led_at} : at, job);
 }
 
 /// Where both are ranked, as those of Siemens. One that stands has done its work.

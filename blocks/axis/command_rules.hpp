@@ -22,13 +22,17 @@ struct RulesOfVendor {
     /// A buffered or blended absolute move ends further by all that has come on top since the last
     /// aborting command. PLCopen's ends at its Position.
     bool keeps_superimposed = false;
+    bool leaves_groups = false;   ///< a command to an axis that its group moves takes it out
     bool exchanges_cams = false;  ///< of a cam at work another CamTableID counts at once
 };
 
 inline constexpr RulesOfVendor rules_of_vendors[] = {
     {},
     {.one_waits = true, .ends_endless = true, .halts_where_due = true, .reset_ends_stop = true},
-    {.blends_moves_only = true, .keeps_superimposed = true, .exchanges_cams = true},
+    {.blends_moves_only = true,
+     .keeps_superimposed = true,
+     .leaves_groups = true,
+     .exchanges_cams = true},
 };
 static_assert(std::size(rules_of_vendors) == std::size(command_rules_names));
 

@@ -406,7 +406,7 @@ void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
     for (auto* names : {&names_, &of_siemens_})
         std::erase_if(*names, [&](std::string_view name) { return declared.contains(name); });
     std::set<const LibraryFile*> is_read;
-    for (std::size_t before = 1; before != taken_.size() + taken_libraries_.size();) {
+    for (std::optional<std::size_t> before; before != taken_.size() + taken_libraries_.size();) {
         before = taken_.size() + taken_libraries_.size();
         take_said();
         take_named();
