@@ -80,8 +80,6 @@ void lack_of_softmotion(Catalog& blocks) {
          {"SMC_TRAFO_Gantry2", "SMC_TRAFO_Gantry3", "SMC_TRAFOF_Gantry2", "SMC_TRAFOF_Gantry3"}},
         {"read Error and ErrorID of the blocks themselves: an axis keeps no list of their errors",
          {"SMC_ReadFBError", "SMC_ClearFBError"}},
-        {"leave it out: lineshaft blocks MC_MoveAbsolute lists the values of ErrorID",
-         {"SMC_ErrorString"}},
         {"take SMC3_ReinitDrive", {"SMC_ReinitDrive", "SMC_StartupDrive"}},
         {"leave it out: an axis counts in its own unit, and the gear of its motor is a "
          "transmission",

@@ -199,7 +199,7 @@ void Axis::wake_up(std::int64_t now) {
     sync = {};
     extra = {};
     safe = {};
-    offset = lasting = added_goal = 0;
+    offset = lasting = added_goal = added_before = 0;
     withdrawn = added_paused = added_counted = 0;
     is_counted = false;
     followers = 0;

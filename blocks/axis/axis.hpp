@@ -130,6 +130,7 @@ struct Axis {
     Leg leg;
     PointMotion added_motion;        ///< of `extra`
     double added_goal = 0;           ///< where `extra` ends, once no override of 0 holds it
+    double added_before = 0;         ///< way from on top that `base` has taken in since an abort
     std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
     std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
@@ -302,6 +303,8 @@ struct Axis {
     void place_direct_cam(const MotionState& leader, const MotionState& from, const Cam& table);
     MotionError turn_to_master(const Context& context, const MotionState& leader, const Cam& table);
     Cam cam(const Context& context) const;
+    bool may_exchange_cam(const Request& request) const;
+    bool exchange_cam(const Context& context, const Request& request);
     Cam begun_anew(Cam table) const;
     void begin_phasing(const Context& context, Job& job);
 
@@ -395,6 +398,7 @@ struct Axis {
 
     // axis_targets.cpp: where a command leads.
     double target_of(const Request& request, const Start& from) const;
+    double place_of(const Request& request, const Start& from) const;
     double modulo_target(const Request& request, const Start& from, double turn) const;
     static double nearest_to(double place, double shown_there, double turn);
 
@@ -416,6 +420,7 @@ struct Axis {
     void foresee_speeds(const Request& request, const Request& before, double start,
                         double direction, const Ahead* behind, Ahead& to) const;
     Before before(const Context& context, const Job& job) const;
+    bool may_blend(const Context& context, const Request& request) const;
     bool look_back(const Context& context, Job& job) const;
     void look_ahead(const Context& context);
     bool look_ahead(const Context& context, Job& last);
@@ -449,12 +454,15 @@ bool is_continuous(Command command);
 /// Whether it acts on what is on top of the motion.
 bool is_superimposed(Command command);
 
+/// Whether the target of a move is further by what has come on top, by its vendor's rules.
+bool keeps_superimposed(const Request& request);
+
 /// Whether the axis follows others by it; whether it shifts the master that the axis follows.
 bool is_synchronous(Command command);
 bool is_phasing(Command command);
 
-/// Whether an axis takes it up while its group moves it.
-bool is_taken_in_group(Command command);
+/// Whether an axis takes it up while its group moves it. By what moves the axis it leaves the path.
+bool is_taken_in_group(const Request& request);
 
 /// Whether a table gives the motion over time.
 bool is_profile(Command command);

@@ -28,7 +28,7 @@ double wanted_velocity(BufferMode mode, double previous, double next) {
 
 /// TwinCAT's halts that begin where the move before was to end.
 bool halts_behind(const Request& request) {
-    return request.command == Command::halt && request.of_twincat != 0 &&
+    return request.command == Command::halt && rules_of(request.rules).halts_where_due &&
            (request.mode == BufferMode::blending_previous ||
             request.mode == BufferMode::blending_high);
 }
@@ -64,6 +64,7 @@ void Axis::foresee_way(const Request& request, double start, double direction, A
     } else if (ends_standing(request.command) || is_continuous(request.command)) {
         Start there;
         there.state.position = there.origin = start;
+        there.taken = added_goal;
         to.goal = target_of(request, there);
         to.direction = sign_towards(to.goal - start);
     }
@@ -117,6 +118,15 @@ Axis::Before Axis::before(const Context& context, const Job& job) const {
     }
     const Job& previous = context.at<Job>(job.previous);
     return {previous.request, previous.ahead.goal, previous.ahead.direction};
+}
+
+/// Behind what waits last, or is at work.
+bool Axis::may_blend(const Context& context, const Request& request) const {
+    if (request.mode < BufferMode::blending_low) return true;
+    if (!rules_of(request.rules).blends_moves_only) return true;
+    const Request& before =
+        queue.last == nowhere ? active.request : context.at<Job>(queue.last).request;
+    return ends_standing(before.command);
 }
 
 /// Whether anything has changed of what those before it need.

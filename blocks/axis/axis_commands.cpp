@@ -72,7 +72,8 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
             return MotionError::none;
         case Command::reset:
             if (state == AxisState::error_stop) leave_error();
-            if (state == AxisState::stopping && request.of_twincat != 0) release(context, at);
+            if (state == AxisState::stopping && rules_of(request.rules).reset_ends_stop)
+                release(context, at);
             return MotionError::none;
         case Command::set_position:
             return set_position(context, at, request);

@@ -2,10 +2,15 @@
 
 namespace lineshaft {
 
-bool is_taken_in_group(Command command) {
+bool is_taken_in_group(const Request& request) {
     using enum Command;
+    const Command command = request.command;
+    const bool needs_motion = is_superimposed(command) || is_phasing(command) ||
+                              command == gear_out || command == cam_out;
     return command == power_on || command == power_off || command == reset ||
-           command == abort_trigger;
+           command == abort_trigger || command == stop ||
+           (rules_of(request.rules).leaves_groups && !is_administrative(command) && !needs_motion &&
+            request.mode == BufferMode::aborting);
 }
 
 MotionError Axis::cannot_follow() const {

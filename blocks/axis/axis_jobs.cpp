@@ -33,12 +33,13 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
             return change(context, at, *running, job);
     if (is_end(job.progress)) return;
     const Request& request = job.request;
-    if (follows_group() && !is_taken_in_group(request.command))
+    if (follows_group() && !is_taken_in_group(request))
         return tell(job, Progress::failed, MotionError::axis_in_group);
     if (state == AxisState::stopping && request.command == Command::stop &&
         (active.place == place || takes_over_stop(request)))
         return stop_again(context, at, job);
-    if (request.of_twincat != 0 && is_endless()) job.request.mode = BufferMode::aborting;
+    if (rules_of(request.rules).ends_endless && is_endless())
+        job.request.mode = BufferMode::aborting;
     const bool waits =
         request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
     const bool is_of_slave = is_phasing(request.command) || request.command == Command::gear_out ||
@@ -59,7 +60,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
         return tell(job, Progress::waiting);
     }
     if (waits) return wait(context, at, job);
-    begin(context, at, job);
+    begin(context, follows_group() ? Moment{led_at} : at, job);
 }
 
 /// Where both are ranked, as those of Siemens. One that stands has done its work.
@@ -93,6 +94,10 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         return change_set_point(context, at, job.request);
     if (&running == &phased) return begin_phasing(context, context.at<Job>(running.place));
     if (&running == &added) return change_added(context, at, before);
+    if (may_exchange_cam(job.request)) {
+        if (!exchange_cam(context, job.request)) running.request = before;
+        return;
+    }
     if (plan_any(context, job.request, at, start_again()) != MotionError::none) {
         running.request = before;
         return;
@@ -119,8 +124,10 @@ bool Axis::is_endless() const {
 }
 
 void Axis::wait(const Context& context, const Moment& at, Job& job) {
-    if (job.request.of_twincat != 0 && queue.first != nowhere)
+    if (rules_of(job.request.rules).one_waits && queue.first != nowhere)
         return tell(job, Progress::failed, MotionError::buffer_full);
+    if (!may_blend(context, job.request))
+        return tell(job, Progress::failed, MotionError::no_blending);
     if (!may_wait(context, job.request))
         return tell(job, Progress::failed, MotionError::software_limit);
     link(context, job, queue, JobPlace::queue);
@@ -166,7 +173,8 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     ++commands;
     const bool was_overridden = is_overridden();
     state = *next;
-    added_counted = added.exists() && is_absolute(request.command) ? 1 : 0;
+    const bool counts = is_absolute(request.command) && !keeps_superimposed(request);
+    added_counted = added.exists() && counts ? 1 : 0;
     if (is_overridden() != was_overridden) replan_added(context, at);
     tell(job, begun());
 }

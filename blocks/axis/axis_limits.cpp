@@ -241,6 +241,7 @@ bool Axis::may_wait(const Context& context, const Request& request) const {
     Start there;
     bool is_known = doing == Doing::moving_to_point && !added.exists() && lasting == 0;
     there.state.position = there.origin = goal + added_goal;
+    there.taken = added_goal;
     const auto go_on = [&](const Request& next) {
         const bool has_target = is_absolute(next.command) &&
                                 (next.command != home || next.homing == HomingMode::to_position);

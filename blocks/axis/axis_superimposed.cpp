@@ -6,6 +6,11 @@ bool is_superimposed(Command command) {
     return command == Command::move_superimposed || command == Command::halt_superimposed;
 }
 
+bool keeps_superimposed(const Request& request) {
+    return rules_of(request.rules).keeps_superimposed && is_absolute(request.command) &&
+           request.mode != BufferMode::aborting;
+}
+
 /// Of the one before stays what it has covered; the new distance counts from there.
 void Axis::begin_added(const Context& context, const Moment& at, Job& job) {
     const bool halts = job.request.command == Command::halt_superimposed;
@@ -80,6 +85,7 @@ void Axis::take_in(double way) {
     added.from -= way;
     added_motion.move(-way);
     added_goal -= way;
+    added_before += way;
 }
 
 void Axis::look_at_added(std::int64_t now) {
@@ -98,7 +104,7 @@ void Axis::end_added(const Context& context) {
 /// With what it has covered in the motion beneath.
 void Axis::clear_added() {
     extra = {};
-    added_goal = 0;
+    added_goal = added_before = 0;
     added_counted = added_paused = 0;
 }
 

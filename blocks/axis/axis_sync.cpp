@@ -263,6 +263,38 @@ Cam Axis::cam(const Context& context) const {
     return begun_anew(WrittenCam::followed(context, CamTableId::of(sync.coupling.cam)));
 }
 
+bool Axis::may_exchange_cam(const Request& request) const {
+    return rules_of(request.rules).exchanges_cams && request.command == Command::cam_in &&
+           doing == Doing::following_axes && sync.law == Law::cammed &&
+           sync.stage == SyncMotion::Stage::in_sync;
+}
+
+/// Another cam in the place of the one that is followed. It begins with the period that the master
+/// is in, or behind the end of a cam that has one, there with its end; or as an absolute one where
+/// it is. False where there is no such cam.
+bool Axis::exchange_cam(const Context& context, const Request& request) {
+    const Coupling& c = sync.coupling;
+    const CamTableId id = CamTableId::of(request.coupling.cam);
+    const Cam before = cam(context), after = begun_anew(WrittenCam::find(context, id));
+    if (before.points.empty() || after.points.empty()) return false;
+    double x = c.master_scaling * sync.led.position + sync.cam_origin;
+    const double runs = before.periodic ? sync.last_periods : x >= before.points.back().x ? 1 : 0;
+    const double seam = before.begin() + runs * before.length();
+    const double place = c.slave_scaling * (before.points.front().y + runs * before.lift());
+    sync.coupling.cam = request.coupling.cam;
+    if (!id.master_absolute) {
+        sync.cam_origin += after.begin() - seam;
+        x += after.begin() - seam;
+    }
+    const double periods = after.periodic ? after.periods(x) : 0;
+    if (c.falls == 0)
+        sync.cam_rise +=
+            place - c.slave_scaling * (after.points.front().y + periods * after.lift());
+    sync.enter_period(periods);
+    sync.ends_at = sync.finished = 0;
+    return true;
+}
+
 /// On a modulo axis the slave is where it began by whole turns, too.
 Cam Axis::begun_anew(Cam table) const {
     const Coupling& c = sync.coupling;

@@ -11,6 +11,15 @@ bool adds_turns_to_shortest(const Request& request) {
 
 double Axis::target_of(const Request& request, const Start& from) const {
     if (!is_absolute(request.command)) return from.origin + request.position;
+    if (!keeps_superimposed(request)) return place_of(request, from);
+    const double further = added_before + from.taken;
+    Start without = from;
+    without.state.position -= further;
+    return place_of(request, without) + further;
+}
+
+/// Of a command to a position.
+double Axis::place_of(const Request& request, const Start& from) const {
     if (request.period > 0) return modulo_target(request, from, request.period);
     return modulo && request.period == 0 ? modulo_target(request, from, period) : request.position;
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "blocks/axis/axis_states.hpp"
+#include "blocks/axis/command_rules.hpp"
 #include "blocks/axis/coupling.hpp"
 #include "blocks/axis/look_ahead.hpp"
 #include "runtime/model/scan.hpp"
@@ -74,6 +75,7 @@ enum class MotionError : std::int64_t {
     no_arc,
     buffer_full,
     not_where_interrupted,
+    no_blending,
 };
 
 inline constexpr std::string_view motion_error_names[] = {"none",
@@ -110,7 +112,8 @@ inline constexpr std::string_view motion_error_names[] = {"none",
                                                           "axis_left_path",
                                                           "no_arc",
                                                           "buffer_full",
-                                                          "not_where_interrupted"};
+                                                          "not_where_interrupted",
+                                                          "no_blending"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -151,7 +154,10 @@ inline constexpr std::string_view motion_error_texts[] = {
     "no arc leads through the points, or about the centre, to where it is to end",
     "another command waits already, and the axis keeps one: start it when that is Active, or with "
     "BufferMode MC_Aborting",
-    "the axes are not where MC_GroupInterrupt has stopped the group: move it there first"};
+    "the axes are not where MC_GroupInterrupt has stopped the group: move it there first",
+    "nothing is blended behind a motion that does not end standing, as a velocity, a gear or a "
+    "cam: "
+    "take BufferMode Buffered or Aborting"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {
@@ -185,8 +191,8 @@ struct Request {
     std::int64_t homes = 0;         ///< of MC_SetPosition: the position is known then
     std::int64_t jogs = 0;          ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater
-    std::int64_t of_twincat = 0;    ///< 1: by TwinCAT's rules (README.md)
-    std::int64_t parameter = 0;     ///< number, of MC_WriteParameter and MC_WriteBoolParameter
+    CommandRules rules = CommandRules::plcopen;
+    std::int64_t parameter = 0;  ///< number, of MC_WriteParameter and MC_WriteBoolParameter
     HomingMode homing = HomingMode::direct;
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
     Coupling coupling;

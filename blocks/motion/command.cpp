@@ -219,8 +219,9 @@ std::vector<Field> table(std::initializer_list<Field> inputs, const Field& first
          output("Error", &CommandBlock::error, "",
                 "the command is refused, or the axis has failed"),
          output("ErrorID", &CommandBlock::error_id, "", "why").one_of(motion_error_names),
-         local("OfTwinCAT", &CommandBlock::pins, &Request::of_twincat, "",
-               "1: by TwinCAT's rules for what waits, halts and is reset")});
+         local("Rules", &CommandBlock::pins, &Request::rules, "",
+               "whose rules count for what waits, halts, is reset and comes on top")
+             .one_of(command_rules_names)});
     return fields;
 }
 

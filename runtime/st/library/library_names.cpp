@@ -55,6 +55,13 @@ bool is_of_mapp(std::string_view library) {
     return library.starts_with("Mc") || library.starts_with("Mp");
 }
 
+/// SoftMotion's axis in a source of CODESYS.
+bool is_of_softmotion(const Declaration& declared) {
+    if (!declared.type || !declared.type->name.place.source) return false;
+    const Token& type = declared.type->name;
+    return type.place.dialect().vendor == Vendor::codesys && same_name(type.text, "AXIS_REF_SM3");
+}
+
 bool is_helper(std::string_view name) {
     return name.front() >= 'a' && name.front() <= 'z';
 }
@@ -236,7 +243,9 @@ void LibraryNames::note_names(const Tree& tree) {
         const bool is_member = e.kind == E::member && reading_.empty();
         if (is_free || is_member || e.kind == E::typed) note(e.token);
     }
-    declarations_ = tree.declarations.size();
+    for (; declarations_ < tree.declarations.size(); ++declarations_)
+        if (is_of_softmotion(tree.declarations[declarations_]))
+            taken_libraries_.insert("SM3_Basic");
 }
 
 void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
@@ -397,7 +406,7 @@ void LibraryNames::add_files(Tree& tree, Diagnostics& out) {
     for (auto* names : {&names_, &of_siemens_})
         std::erase_if(*names, [&](std::string_view name) { return declared.contains(name); });
     std::set<const LibraryFile*> is_read;
-    for (std::size_t before = 1; before != taken_.size() + taken_libraries_.size();) {
+    for (std::optional<std::size_t> before; before != taken_.size() + taken_libraries_.size();) {
         before = taken_.size() + taken_libraries_.size();
         take_said();
         take_named();

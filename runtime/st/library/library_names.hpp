@@ -16,7 +16,8 @@ namespace lineshaft::st {
 /// Which files of the catalogue's libraries a program takes along. A file is taken
 ///   - for a name of it that the sources use and nobody else has: they declare no type, unit,
 ///     global variable or value of an enumeration of that name, nor has the catalogue it;
-///   - for a name that the catalogue has, too, if something else of that library is taken, or if it
+///   - for a name that the catalogue has, too, if something else of that library is taken, or of
+///     SoftMotion's, if a source of CODESYS names its axis, AXIS_REF_SM3, or if it
 ///     stands in a source in TwinCAT's dialect, or in a file of Automation Studio's, and the
 ///     library is one of its, or if the sources name pins of it that the catalogue's block has not;
 ///   - for `EXTENDS TON` and its like in CODESYS and TwinCAT: `extended_TON`;

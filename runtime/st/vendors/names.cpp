@@ -17,7 +17,7 @@ struct Renamed {
 constexpr Renamed types[] = {
     {"axis_ref",
      " to_axis to_speedaxis to_positioningaxis to_synchronousaxis axis_ref_sm3 "
-     "axis_ref_virtual_sm3 mcaxistype "},
+     "axis_ref_virtual_sm3 free_encoder_ref mcaxistype "},
     {"cam_ref", " to_cam "},
     {"axes_group_ref", " axis_group_ref_sm3 to_kinematics "},
     {"path_ref", " mc_path_ref "},

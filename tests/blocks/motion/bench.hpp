@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "blocks/axis/axis.hpp"
 #include "runtime/run/link.hpp"
@@ -32,6 +33,11 @@ class MotionBench {
         const auto number =
             static_cast<std::size_t>(linked_.net.instance_numbers.at(std::string(name)));
         return *std::launder(reinterpret_cast<const Block*>(linked_.machine.instances[number]));
+    }
+
+    template <class Block>
+    Block& block(std::string_view name) {
+        return const_cast<Block&>(std::as_const(*this).block<Block>(name));
     }
 
     /// Signals by name, as `move.Execute`. Between two steps.

@@ -66,6 +66,7 @@ PinChanges Sequences::draw(std::uint64_t seed) const {
 
 std::string Sequences::run(const PinChanges& events) {
     bench_.restart();
+    for (const NamedCommand& command : commands_) command.block->pins.rules = setup_.rules;
     for (const std::size_t pin : powers_) set(pin, 1);
     begin();
     auto next = events.begin();

@@ -40,6 +40,7 @@ class Sequences {
         std::int64_t patience = 8000;           ///< until all is over, afterwards [ms]
         std::int64_t pause = 1;                 ///< between instants with events, at least [ms]
         std::size_t at_once = 6;                ///< events in an instant, at most
+        CommandRules rules = CommandRules::plcopen;
     };
 
     explicit Sequences(const Setup& setup);
@@ -64,7 +65,7 @@ class Sequences {
     struct NamedCommand {
         std::string name;
         std::string_view type;
-        const CommandBlock* block = nullptr;
+        CommandBlock* block = nullptr;
     };
     const std::vector<NamedCommand>& commands() const { return commands_; }
     std::int64_t now() const { return bench_.now(); }  ///< [ms]

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+#include <string_view>
+
+namespace lineshaft {
+
+/// By whose rules an axis carries out a command: PLCopen's, or those of a vendor whose library has
+/// given it.
+enum class CommandRules : std::int64_t { plcopen, twincat, softmotion };
+
+inline constexpr std::string_view command_rules_names[] = {"plcopen", "twincat", "softmotion"};
+
+/// What differs from vendor to vendor.
+struct RulesOfVendor {
+    bool one_waits = false;          ///< another one that would wait is refused
+    bool ends_endless = false;       ///< what would wait for a motion without an end aborts it
+    bool halts_where_due = false;    ///< a blended halt begins where the move before was to end
+    bool reset_ends_stop = false;    ///< MC_Reset also ends what MC_Stop holds
+    bool blends_moves_only = false;  ///< nothing is blended behind what does not end standing
+    /// A buffered or blended absolute move ends further by all that has come on top since the last
+    /// aborting command. PLCopen's ends at its Position.
+    bool keeps_superimposed = false;
+    bool leaves_groups = false;   ///< a command to an axis that its group moves takes it out
+    bool exchanges_cams = false;  ///< of a cam at work another CamTableID counts at once
+};
+
+inline constexpr RulesOfVendor rules_of_vendors[] = {
+    {},
+    {.one_waits = true, .ends_endless = true, .halts_where_due = true, .reset_ends_stop = true},
+    {.blends_moves_only = true,
+     .keeps_superimposed = true,
+     .leaves_groups = true,
+     .exchanges_cams = true},
+};
+static_assert(std::size(rules_of_vendors) == std::size(command_rules_names));
+
+constexpr const RulesOfVendor& rules_of(CommandRules rules) {
+    return rules_of_vendors[static_cast<std::size_t>(rules)];
+}
+
+}  // namespace lineshaft
