@@ -105,30 +105,29 @@ def random_edits_are_checked_as_if_fresh():
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder).resolve()  # other tests read the sources while these are edited
         for part in "programs", "config", "tests/st":
-            shutil.copytree(source / part, root / part)
-        files = [root / name for name in names if (root / name).exists()]
+            shutil.copytree(source / part, root / "opened" / part)
+            shutil.copytree(source / part, root / "checked" / part)  # a program without a name has that of its file
+        files = [root / "opened" / name for name in names if (source / name).exists()]
         assert len(files) >= 8, files
         for file in files:
             start = text = file.read_text(encoding="utf-8")
-            beside = file.with_name(f".edited_{file.name}")  # what it names is found from there
-            try:
-                client.open(file, text)
-                for i in range(edits // len(files) + 1):
-                    if i % 8 == 0:
-                        client.change(file, start)
-                        text = start
-                    text, change = random_edit(text, rng)
-                    begun = time.perf_counter()
-                    client.change(file, text, change)
-                    got = told_by_server(client, file, text)
-                    times.append(time.perf_counter() - begun)
-                    beside.write_text(text, encoding="utf-8", newline="")
-                    wanted = {(l, c, code, m.replace(str(beside), str(file)), h.replace(str(beside), str(file)))
-                              for l, c, code, m, h in told_by_command(beside)}
-                    assert got == wanted, f"{file}\n{text}\n  server: {got - wanted}\n  command: {wanted - got}"
-                client.close(file)
-            finally:
-                beside.unlink(missing_ok=True)
+            written = root / "checked" / file.relative_to(root / "opened")
+            client.open(file, text)
+            for i in range(edits // len(files) + 1):
+                if i % 8 == 0:
+                    client.change(file, start)
+                    text = start
+                text, change = random_edit(text, rng)
+                begun = time.perf_counter()
+                client.change(file, text, change)
+                got = told_by_server(client, file, text)
+                times.append(time.perf_counter() - begun)
+                written.write_text(text, encoding="utf-8", newline="")
+                wanted = {(l, c, code, m.replace("/checked/", "/opened/"), h.replace("/checked/", "/opened/"))
+                          for l, c, code, m, h in told_by_command(written)}
+                assert got == wanted, f"{file}\n{text}\n  server: {got - wanted}\n  command: {wanted - got}"
+            client.close(file)
+            written.write_text(start, encoding="utf-8", newline="")
     assert client.end() == 0
     times.sort()
     return f"{len(times)} edits, 95 % told within {times[int(0.95 * len(times))] * 1000:.1f} ms"
