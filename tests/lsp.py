@@ -485,6 +485,110 @@ def a_tag_is_renamed_in_its_table():
     on.end()
 
 
+def twincat(kind, name, declaration, body="", more=""):
+    code = f"    <Implementation>\n      <ST><![CDATA[{body}]]></ST>\n    </Implementation>\n" if body else ""
+    return (f'<?xml version="1.0" encoding="utf-8"?>\n<TcPlcObject Version="1.1.0.1">\n  <{kind} Name="{name}">\n'
+            f"    <Declaration><![CDATA[{declaration}]]></Declaration>\n{code}{more}  </{kind}>\n</TcPlcObject>\n")
+
+
+MACHINE = {
+    "Machine.plcproj": '<?xml version="1.0" encoding="utf-8"?>\n<Project xmlns="http://schemas.microsoft.com/developer/msbuild/2003">\n'
+                       "  <PropertyGroup><Name>Machine</Name></PropertyGroup>\n  <ItemGroup>\n"
+                       + "".join(f'    <Compile Include="{name}"><SubType>Code</SubType></Compile>\n'
+                                 for name in ("MAIN.TcPOU", "FB_Lamp.TcPOU", "E_Mode.TcDUT", "GVL.TcGVL")) + "  </ItemGroup>\n</Project>\n",
+    "MAIN.TcPOU": twincat("POU", "MAIN", "PROGRAM MAIN\nVAR\n    lamp : FB_Lamp;\n    n : INT;\nEND_VAR\n",
+                          "lamp(on := GVL.start);\nn := lamp.Count(k := 2);\nIF lamp.mode = E_Mode.Lit THEN\n    n := n + GVL.step;\nEND_IF\n"),
+    "FB_Lamp.TcPOU": twincat("POU", "FB_Lamp", "FUNCTION_BLOCK FB_Lamp\nVAR_INPUT\n    on : BOOL; // what a lamp is told\nEND_VAR\nVAR_OUTPUT\n    mode : E_Mode;\nEND_VAR\n",
+                             "mode := SEL(on, E_Mode.Dark, E_Mode.Lit);\n",
+                             "    <Method Name=\"Count\">\n      <Declaration><![CDATA[METHOD Count : INT\nVAR_INPUT\n    k : INT;\nEND_VAR\n]]></Declaration>\n"
+                             "      <Implementation>\n        <ST><![CDATA[Count := 3 * k;\n]]></ST>\n      </Implementation>\n    </Method>\n"),
+    "E_Mode.TcDUT": twincat("DUT", "E_Mode", "TYPE E_Mode :\n(\n    Dark := 0,\n    Lit := 7\n) UDINT;\nEND_TYPE\n"),
+    "GVL.TcGVL": twincat("GVL", "GVL", "VAR_GLOBAL\n    start : BOOL;\n    step : INT := 4;\nEND_VAR\n"),
+}
+
+
+@check
+def objects_of_twincat_are_told_at_their_places():
+    on = Opened(MACHINE)
+    for name, right, wrong in (("MAIN.TcPOU", "n := lamp", "m := lamp"), ("FB_Lamp.TcPOU", "3 * k", "3 * kk"),
+                               ("E_Mode.TcDUT", "Lit := 7", "Lit := seven"), ("GVL.TcGVL", "INT := 4", "INT := TRUE")):
+        path, text = on.folder / name, MACHINE[name].replace(right, wrong)
+        on.client.open(path)
+        assert on.client.diagnosed(path) == [], (name, on.client.diagnosed(path))
+        on.client.change(path, text)
+        told = told_by_server(on.client, path, text)
+        path.write_text(text, encoding="utf-8")
+        answer = subprocess.run([lineshaft, "check", "--json", on.folder], capture_output=True, check=False)
+        wanted = {(d["line"], d["column"], d["code"], d["message"], d["help"])
+                  for d in json.loads(answer.stdout)["diagnostics"] if d["file"] == str(path)}
+        assert told and told == wanted, (name, told, wanted)
+        path.write_text(MACHINE[name], encoding="utf-8")
+        on.client.change(path, MACHINE[name])
+        assert on.client.diagnosed(path) == [], name
+        on.client.close(path)
+    on.end()
+
+
+@check
+def names_in_objects_of_twincat_lead_where_they_stand():
+    on = Opened(MACHINE)
+
+    def found(method, name, text, **params):
+        return on.answer(method, name, text, **params)["result"]
+    for name, text, wanted in (("MAIN.TcPOU", "on :=", ("on : BOOL", "VAR_INPUT", "what a lamp is told")), ("MAIN.TcPOU", "Count", ("Count",)),
+                               ("MAIN.TcPOU", "Lit", ("E_Mode.Lit = 7", "- Dark = 0")), ("FB_Lamp.TcPOU", "Dark", ("E_Mode.Dark = 0",)),
+                               ("MAIN.TcPOU", "step", ("step : INT", "VAR_GLOBAL"))):
+        said = found("hover", name, text)["contents"]["value"]
+        assert all(piece in said for piece in wanted), (name, text, said)
+    for name, text, file, place in (("MAIN.TcPOU", "on :=", "FB_Lamp.TcPOU", "on : BOOL"), ("MAIN.TcPOU", "Lit", "E_Mode.TcDUT", "Lit :="),
+                                    ("MAIN.TcPOU", "step", "GVL.TcGVL", "step :"), ("MAIN.TcPOU", "Count", "FB_Lamp.TcPOU", "Count : INT")):
+        place = MACHINE[file].index(place)
+        line = MACHINE[file].count("\n", 0, place)
+        told = found("definition", name, text)
+        assert told["uri"] == uri_of(on.folder / file) and told["range"]["start"]["line"] == line, (name, text, told)
+    places = found("references", "E_Mode.TcDUT", "Lit", context={"includeDeclaration": True})
+    assert sorted(pathlib.Path(path_of(p["uri"])).name for p in places) == ["E_Mode.TcDUT", "FB_Lamp.TcPOU", "MAIN.TcPOU"], places
+    assert on.rename("FB_Lamp.TcPOU", "Lit", "Bright") == {n: t.replace("Lit", "Bright") for n, t in MACHINE.items()}
+    assert on.rename("MAIN.TcPOU", "Count", "Sum") == {n: t.replace('"Count"', "@").replace("Count", "Sum").replace("@", '"Count"')
+                                                       for n, t in MACHINE.items()}
+    [symbol] = found("documentSymbol", "FB_Lamp.TcPOU", "FB_Lamp")
+    assert symbol["name"] == "FB_Lamp" and [c["name"] for c in symbol["children"]] == ["on", "mode", "Count"], symbol
+    line = MACHINE["FB_Lamp.TcPOU"].split("METHOD Count")[0].count("\n")
+    assert symbol["children"][2]["selectionRange"]["start"] == {"line": line, "character": len("      <Declaration><![CDATA[METHOD ")}, symbol
+    assert found("completion", "MAIN.TcPOU", "n := lamp") is None
+    on.end()
+
+
+MODES = {
+    "modes.st": "TYPE E_Mode : (Dark := 1, Lit := 7, Both := Lit + 1); END_TYPE\nFUNCTION_BLOCK Lamp\nVAR_INPUT wanted : E_Mode; END_VAR\n"
+                "VAR_OUTPUT mode : E_Mode := E_Mode#Lit; END_VAR\nCASE wanted OF\n    Lit: mode := E_Mode#Lit;\nELSE\n    mode := Dark;\nEND_CASE\nEND_FUNCTION_BLOCK\n",
+    "lamps.yaml": "lineshaft: 1\ntasks: {main: {every: 10 ms}}\nsources: [modes.st]\nblocks:\n"
+                  "  first: {type: Lamp, task: main, wanted: Both}\n  second: {type: Lamp, task: main, wanted: Lit}\nrun: {for: 10 ms}\n"
+                  "stimulus: [{at: 5 ms, set: {first.wanted: Lit}}]\nexpect:\n  - {at: end, first.mode: Lit}\n  - {always: second.mode, equals: E_Mode.Lit}\n",
+}
+
+
+@check
+def values_of_enumerations_are_shown_renamed_and_offered():
+    on = Opened(MODES)
+    subprocess.run([lineshaft, "run", on.folder / "lamps.yaml"], check=True, capture_output=True)
+    said = on.answer("hover", "modes.st", "Lit: mode")["result"]["contents"]["value"]
+    assert "E_Mode.Lit = 7" in said and "- Both = 8" in said, said
+    found = on.rename("modes.st", "Lit :=", "Bright")
+    assert found["modes.st"] == MODES["modes.st"].replace("Lit", "Bright"), found
+    assert found["lamps.yaml"] == MODES["lamps.yaml"].replace("Lit", "Bright"), found
+    for name, text in found.items():
+        (on.folder / name).write_text(text, encoding="utf-8")
+    subprocess.run([lineshaft, "run", on.folder / "lamps.yaml"], check=True, capture_output=True)
+    on.client.tell("workspace/didChangeWatchedFiles", {"changes": []})
+    path = on.folder / "lamps.yaml"
+    on.client.open(path)
+    assert on.client.diagnosed(path) == []
+    labels = {i["label"] for i in on.answer("completion", "lamps.yaml", "Bright")["result"]["items"]}
+    assert labels >= {"Dark", "Bright", "Both"}, labels
+    on.end()
+
+
 @check
 def yaml_of_others_is_left_alone():
     on = Folder()

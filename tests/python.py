@@ -43,6 +43,10 @@ try:
 except lineshaft.ExpectationError as error:
     assert "expected 9.47 mm" in str(error), error
 
+reals = lineshaft.run(source / "tests/cases/reals_that_are_not_finite/program.yaml")
+assert (reals["ratios.above"], reals["ratios.below"]) == (float("inf"), float("-inf")) and reals["ratios.neither"] != reals["ratios.neither"]
+assert list(reals.trace["ratios.narrow"][:2]) == [float("inf"), float("-inf")] and reals.trace["ratios.neither"][0] != reals.trace["ratios.neither"][0]
+
 fast = lineshaft.run(source / "programs/04_circle.yaml", speed="20 mm/s", settings={"radius": "10 mm"})
 assert fast.machine_time < 5, fast.machine_time
 try:

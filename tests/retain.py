@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Kills runs that write retained values, at random moments: the file is always whole, the old or the new one.
 Then flips bits of the file: each is told, and the copy before it is taken where there is one.
-An instance in VAR RETAIN goes on with its values, whatever its initial values are.
+An instance in VAR RETAIN goes on with its values, whatever its initial values are. `--restart` says what a run begins with.
 
 usage: retain.py LINESHAFT [KILLS]
 """
@@ -93,12 +93,59 @@ def begins_once(lineshaft, folder):
     print("an instance went on with what was retained")
 
 
+RESTARTED = """\
+lineshaft: 1
+sources: [restarted.st]
+tasks: {main: {every: 10 ms}}
+blocks: {m: {type: Restarted, task: main}}
+run: {for: 40 ms}
+"""
+PARTS = """\
+PROGRAM Restarted
+VAR RETAIN kept : INT; END_VAR
+VAR plain : INT; END_VAR
+kept := kept + 1; plain := plain + 1;
+END_PROGRAM
+"""
+
+
+def restarts(lineshaft, folder):
+    """Cold begins anew, warm with what is retained, hot with all of the checkpoint, and is where that was."""
+    (folder / "restarted.st").write_text(PARTS, encoding="utf-8")
+    (folder / "restarted.yaml").write_text(RESTARTED, encoding="utf-8")
+    (folder / "longer.yaml").write_text(RESTARTED.replace("40 ms", "70 ms"), encoding="utf-8")
+
+    def values(*arguments, program="restarted.yaml"):
+        answer = subprocess.run([lineshaft, "run", program, "--json", *arguments], cwd=folder, check=True,
+                                capture_output=True, text=True)
+        found = json.loads(answer.stdout)
+        return found["signals"]["m.kept"], found["signals"]["m.plain"], found["scans"]["main"]
+
+    kept = ["--retain-file", "restarted.retain"]
+    assert values(*kept) == (5, 5, 5)
+    assert values(*kept) == (10, 5, 5), "warm is what a run is that is told nothing"
+    assert values(*kept, "--restart", "warm") == (15, 5, 5)
+    assert values(*kept, "--restart", "cold") == (5, 5, 5)
+    assert values(*kept) == (10, 5, 5), "what a cold run kept"
+    assert values("--restart", "warm") == (5, 5, 5), "without a file nothing is retained"
+    checkpoint = ["--checkpoint", "restarted.checkpoint"]
+    values("--checkpoint-every", "20 ms", *checkpoint)
+    for how in (["--restart", "hot"], ["--resume"]):
+        assert values(*how, *checkpoint) == (5, 5, 5), how
+    for how, code, says in (("--restart=lukewarm", 2, "'lukewarm' is none of cold, hot, warm"), ("--restart=hot", 2, "nowhere")):
+        answer = subprocess.run([lineshaft, "run", "restarted.yaml", how, "--checkpoint", "nowhere"], cwd=folder,
+                                capture_output=True, text=True)
+        assert answer.returncode == code and says in answer.stderr, answer
+    print("each --restart began with what is its own")
+
+
 def main():
     lineshaft = str(pathlib.Path(sys.argv[1]).resolve())
     kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
     chance = random.Random(1)
     with tempfile.TemporaryDirectory() as folder:
         begins_once(lineshaft, pathlib.Path(folder))
+        restarts(lineshaft, pathlib.Path(folder))
         program = pathlib.Path(folder, "program.yaml")
         program.write_text(PROGRAM, encoding="utf-8")
         kept = pathlib.Path(folder, "values.retain")

@@ -288,6 +288,79 @@ def check_diff():
         yield f"diff of a shorter one: {code} {out}{err}"
 
 
+RATIOS = """FUNCTION_BLOCK Ratios
+VAR_INPUT one, two : LREAL; END_VAR
+VAR_OUTPUT above, below, neither : LREAL; END_VAR
+above := one / two;
+below := -above;
+neither := above - above;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Kept
+VAR_INPUT above, below, neither : LREAL; END_VAR
+;
+END_FUNCTION_BLOCK
+"""
+NOT_FINITE = """lineshaft: 1
+tasks: {main: {every: 1 ms}}
+sources: [ratios.st]
+blocks:
+  a: {type: Ratios, task: main, one: 1, two: 1}
+  b: {type: Kept, task: main}
+stimulus: [{at: 2 ms, set: {a.two: 0}}, {at: 4 ms, set: {a.two: 2}}]
+run: {for: 5 ms}
+trace: {task: main, signals: [a.above, a.below, a.neither]}
+"""
+
+
+def check_not_finite():
+    """INF, -INF and NaN are read back as what they are, and an empty cell is none of them."""
+    (FOLDER / "ratios.st").write_text(RATIOS)
+    (FOLDER / "f.yaml").write_text(NOT_FINITE)
+    code, out, err = lineshaft("run", "f.yaml", "--trace", "f.csv")
+    rows = rows_of("f.csv")
+    if code != 0 or rows[3][2:] != ["INF", "-INF", "NaN"] or rows[5][2:] != ["0.5", "-0.5", "0"]:
+        yield f"what is not finite in a trace: {code} {err}{rows}"
+    played = NOT_FINITE[:NOT_FINITE.index("stimulus")] + (
+        "stimulus: [{file: f.csv, set: {b.above: a.above, b.below: a.below, b.neither: a.neither}}]\nrun: {for: 5 ms}\n"
+        "trace: {task: main, signals: [b.above, b.below, b.neither]}\n")
+    (FOLDER / "played.yaml").write_text(played)
+    code, out, err = lineshaft("run", "played.yaml", "--trace", "played.csv")
+    if code != 0 or [row[2:] for row in rows_of("played.csv")[1:]] != [row[2:] for row in rows[1:]]:
+        yield f"what is not finite is replayed as {code} {err}{rows_of('played.csv')}"
+    text = (FOLDER / "f.csv").read_text()
+    for name in ("plain.csv", "same.csv"):  # without what tells types
+        (FOLDER / name).write_text(text)
+    if lineshaft("diff", "plain.csv", "same.csv")[0] != 0:
+        yield "NaN and INF deviate from themselves"
+    for of, by in (("INF", "-INF"), ("NaN", ""), ("NaN", "INF"), ("INF", "1e308"), ("NaN", "0")):
+        (FOLDER / "same.csv").write_text(text.replace(f",{of}", f",{by}", 1))
+        code, out, err = lineshaft("diff", "plain.csv", "same.csv", "--tolerance", "1e300")
+        if code != 1 or of not in out or (by and by.replace("e", "e+") not in out):
+            yield f"diff of {of} and '{by}': {code} {out}{err}"
+    (FOLDER / "same.csv").write_text(text.replace(",INF", ",", 1))
+    found = json.loads(lineshaft("diff", "plain.csv", "same.csv", "--json")[1])["first"]
+    if (found["a"], found["b"]) != ("INF", None) or "ulp" in found:
+        yield f"diff --json of INF and an empty cell: {found}"
+    (FOLDER / "e.yaml").write_text(NOT_FINITE + "expect: [{at: 3 ms, a.neither: 0}, {at: 3 ms, a.above: INF}, {never: a.neither, equals: 7}]\n")
+    code, out, err = lineshaft("run", "e.yaml", "--json")
+    answer = json.loads(out)
+    told = "a.neither is NaN at 0.003 s, and no comparison with NaN is fulfilled; expected 0"
+    if code != 1 or [e["ok"] for e in answer["expect"]] != [False, True, True] or answer["expect"][0]["deviation"] != told:
+        yield f"expectations of what is not finite: {code} {answer['expect']}"
+    (FOLDER / "e.yaml").write_text(NOT_FINITE.replace("{at: 4 ms, set: {a.two: 2}}", "{at: 4 ms, set: {a.one: 2}}"))
+    signals = json.loads(lineshaft("run", "e.yaml", "--json")[1], parse_constant=lambda word: 1 / 0)["signals"]
+    if [signals[f"a.{name}"] for name in ("above", "below", "neither")] != ["INF", "-INF", "NaN"]:
+        yield f"what is not finite in JSON: {signals}"
+    (FOLDER / "times.csv").write_text("time,x\n0,1\nINF,2\n")
+    code, out, err = lineshaft("diff", "times.csv", "times.csv")
+    if code != 2 or "'INF' in column 'time' is not a time" not in err:
+        yield f"a time that is not finite: {code} {err}"
+    if has_pages(COMMAND, "a page of what is not finite"):
+        code, out, err = lineshaft("report", "f.csv", "-o", "f.html")
+        if code != 0 or '"not_finite":[[2,2,"INF"]]' not in (FOLDER / "f.html").read_text():
+            yield f"a page of what is not finite: {code} {err}"
+
+
 def main():
     (FOLDER / "p.yaml").write_text(PROGRAM)
     code, out, err = lineshaft("run", "p.yaml", "--trace", "run.csv")
@@ -297,7 +370,7 @@ def main():
     for name in ("run.csv", "run.change.csv", "run.often.1.csv"):
         failures += [*check_rules(name), *check_tools(name)]
     failures += [*check_conditions(), *check_styles(), *check_verify(), *check_verify_bytes(), *check_origins(),
-                 *check_diff()]
+                 *check_diff(), *check_not_finite()]
     for failure in failures:
         print(failure)
     print(f"{len(failures)} failures")

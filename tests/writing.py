@@ -126,8 +126,27 @@ def small_file_systems(c):
                                   says="cannot write 'small/t.csv': No space left on device"))
         assert c.path("small/t.csv").read_bytes() == before
         c.check_whole("small/t.csv")
+        formats_all_or_nothing(c, small)
     finally:
         subprocess.run(["umount", small], check=True)
+
+
+def formats_all_or_nothing(c, small):
+    """On a full disk `format` leaves a source as it was, and `new` leaves nothing."""
+    for path in small.iterdir():
+        path.unlink()
+    source = small / "odd.st"
+    source.write_text("PROGRAM Main\nVAR x:INT; END_VAR\n" + "x:=x+1;\n" * 500 + "END_PROGRAM\n")
+    before = source.read_bytes()
+    free = os.statvfs(small)
+    (small / "rest").write_bytes(bytes(free.f_bavail * free.f_frsize))
+    c.run("format", "small/odd.st", expect=3, says="cannot write 'small/odd.st': No space left on device")
+    assert source.read_bytes() == before
+    c.run("new", "small/mine", expect=3, says="cannot write 'small/mine.yaml': No space left on device")
+    assert not list(small.glob("*odd.st?*")) and not list(small.glob("*mine*")), list(small.iterdir())
+    (small / "rest").unlink()
+    c.run("format", "small/odd.st", expect=0)
+    assert "x := x + 1;" in source.read_text()
 
 
 def folders(c):

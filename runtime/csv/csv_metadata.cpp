@@ -29,12 +29,16 @@ Type type_of(const Json& column) {
 }
 
 /// One for each name; none where these have 0, 1, 2, ...
-std::vector<std::int64_t> numbers_of(const Json& column, std::size_t names) {
+std::vector<Wide> numbers_of(const Json& column, std::size_t names) {
     const auto list = column.find("lineshaft:numbers");
     if (list == column.end() || !list->is_array() || list->size() != names) return {};
-    std::vector<std::int64_t> numbers;
-    for (const Json& number : *list)
-        numbers.push_back(number.is_number_integer() ? number.get<std::int64_t>() : 0);
+    std::vector<Wide> numbers;
+    for (const Json& number : *list) {
+        if (number.is_number_unsigned())
+            numbers.push_back(number.get<std::uint64_t>());
+        else
+            numbers.push_back(number.is_number_integer() ? number.get<std::int64_t>() : 0);
+    }
     return numbers;
 }
 

@@ -19,9 +19,9 @@ struct CsvMetadata {
         std::string title;   ///< as the header has it
         std::string signal;  ///< as the program has it: `shaft.position`
         Type type = Type::real;
-        std::string unit;                   ///< empty: none
-        std::vector<std::string> values;    ///< names of an enumeration
-        std::vector<std::int64_t> numbers;  ///< of these; empty: 0, 1, 2, ...
+        std::string unit;                 ///< empty: none
+        std::vector<std::string> values;  ///< names of an enumeration
+        std::vector<Wide> numbers;        ///< of these; empty: 0, 1, 2, ...
     };
 
     std::string title;    ///< of the program

@@ -12,10 +12,9 @@
 
 #include <fmt/format.h>
 
-#include "runtime/csv/checksum.hpp"
 #include "runtime/csv/csv_cells.hpp"
+#include "runtime/csv/csv_lines.hpp"
 #include "runtime/source/codes.hpp"
-#include "runtime/source/input_file.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/source/yaml.hpp"
 
@@ -23,86 +22,9 @@ namespace lineshaft {
 
 namespace {
 
-constexpr std::size_t chunk = 1 << 20;  // bytes; also the longest line
 constexpr std::size_t most_mistakes = 20;
 constexpr double exact_up_to = 9007199254740992.0;  // 2^53
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-/// Cuts a file into lines, in constant memory.
-class Lines {
-  public:
-    explicit Lines(const std::string& path) : file_(path), error_(file_.error()) {
-        buffer_.resize(2 * chunk);
-    }
-
-    /// The next line without its end (LF, CR LF or CR); false at the end of the file, or after an
-    /// error.
-    bool next(std::string_view& line);
-    bool is_ended() const { return ended_; }                   ///< the last line had an end
-    int error() const { return error_; }                       ///< errno, 0 when all is well
-    std::string checksum() const { return checksum_.text(); }  ///< of all that was read
-
-  private:
-    void fill();
-    bool find_end();
-
-    InputFile file_;
-    Checksum checksum_;
-    std::string buffer_;
-    std::size_t begin_ = 0, end_ = 0;
-    std::size_t stop_ = 0;     ///< up to here there is no line end behind begin_
-    std::size_t newline_ = 0;  ///< the next LF of what has been read; end_: none
-    bool searched_ = false;    ///< for it
-    bool ended_ = true;
-    bool after_return_ = false;  ///< the line before ended with CR: an LF belongs to it
-    int error_;
-};
-
-void Lines::fill() {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    stop_ -= begin_;
-    begin_ = 0;
-    char* const to = buffer_.data() + end_;
-    const std::size_t count = file_.read(to, std::min(chunk, buffer_.size() - end_));
-    checksum_.add({to, count});
-    end_ += count;
-    searched_ = false;
-    if (file_.error() != 0) error_ = file_.error();
-}
-
-/// Looks for the end of the line at begin_ in what has been read; each byte is looked at once.
-bool Lines::find_end() {
-    const auto find = [this](char wanted, std::size_t from, std::size_t to) {
-        const void* found = std::memchr(buffer_.data() + from, wanted, to - from);
-        return found ? static_cast<std::size_t>(static_cast<const char*>(found) - buffer_.data())
-                     : to;
-    };
-    if (!searched_ || newline_ < stop_) newline_ = find('\n', stop_, end_);
-    searched_ = true;
-    stop_ = find('\r', stop_, newline_);
-    return stop_ < end_;
-}
-
-bool Lines::next(std::string_view& line) {
-    if (error_ != 0) return false;
-    if (after_return_ && begin_ == end_ && !file_.is_ended()) fill();
-    if (after_return_ && begin_ < end_ && buffer_[begin_] == '\n') ++begin_;
-    after_return_ = false;
-    stop_ = begin_;
-    bool found = find_end();
-    while (!found && !file_.is_ended() && error_ == 0 && end_ - begin_ <= chunk) {
-        fill();
-        found = find_end();
-    }
-    if (error_ == 0 && stop_ - begin_ > chunk) error_ = EFBIG;
-    if (error_ != 0 || (!found && begin_ == end_)) return false;
-    ended_ = found;
-    after_return_ = found && buffer_[stop_] == '\r';
-    line = {buffer_.data() + begin_, stop_ - begin_};
-    begin_ = stop_ + (found ? 1 : 0);
-    return true;
-}
 
 std::string help_with(const CsvColumn& column) {
     if (column.type != Type::real) return fmt::format("the column is {}", name_of(column.type));
@@ -141,6 +63,7 @@ class CsvReader {
     void row();
     const char* cell(CsvColumn& column, const char* at, const char* end);
     void take(CsvColumn& column, Wide value, double rounded);
+    void take(CsvColumn& column, double value);
     void odd_cell(CsvColumn& column, std::string_view cell);
     void end_of_rows();
     void drop_last_row();
@@ -153,7 +76,7 @@ class CsvReader {
     const std::string& path_;
     Diagnostics& out_;
     const CsvOptions& options_;
-    Lines lines_;
+    CsvLines lines_;
     std::string_view line_;
     std::size_t number_ = 0;  ///< of the line
     std::size_t blank_ = 0;   ///< lines up to it that may be the last
@@ -203,8 +126,9 @@ bool CsvReader::is_yaml() {
 
 void CsvReader::check_file() {
     if (lines_.error() == EFBIG)
-        return out_.add(code::row_of_another_length, {table_.header, 0, 0, 1},
-                        fmt::format("line {} has more than {} bytes", number_ + 1, chunk));
+        return out_.add(
+            code::row_of_another_length, {table_.header, 0, 0, 1},
+            fmt::format("line {} has more than {} bytes", number_ + 1, CsvLines::longest));
     if (lines_.error() != 0)
         return out_.add(code::file_cannot_be_read, {},
                         fmt::format("cannot read '{}': {}", path_, std::strerror(lines_.error())));
@@ -397,16 +321,27 @@ void CsvReader::take(CsvColumn& column, Wide value, double rounded) {
     append(column.values, rounded);
 }
 
-/// A name, empty, quoted, between blanks, with a decimal comma or a plus; or wrong.
+void CsvReader::take(CsvColumn& column, double value) {
+    if (std::isnan(value)) column.not_numbers.push_back(column.values.size());
+    append(column.values, value);
+}
+
+/// A name, empty, quoted, between blanks, with a decimal comma or a plus, not finite; or wrong.
 void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
     std::string text = unquoted(cell);
     if (separator_ == ';' && column.type == Type::real) std::ranges::replace(text, ',', '.');
+    if (text.empty()) return append(column.values, missing);
+    if (const auto named = std::ranges::find(column.names, text); named != column.names.end()) {
+        const Wide number = column.number(static_cast<std::size_t>(named - column.names.begin()));
+        return take(column, number, static_cast<double>(number));
+    }
     const char* wrong = nullptr;
-    double real = missing;
-    if (!text.empty() && column.type == Type::real) {
+    if (column.type == Type::real) {
+        double real = missing;
         wrong = read_cell(text, real);
-        if (!wrong && !std::isfinite(real)) wrong = "is not a number";
-    } else if (!text.empty()) {
+        if (!wrong && (std::isfinite(real) || column.name != "time")) return take(column, real);
+        if (!wrong) wrong = "is not a time";
+    } else {
         std::int64_t with_sign = 0;
         std::uint64_t without = 0;
         wrong = read_cell(text, with_sign);
@@ -415,14 +350,9 @@ void CsvReader::odd_cell(CsvColumn& column, std::string_view cell) {
         if (!wrong && fits(column, whole)) return take(column, whole, static_cast<double>(whole));
         if (!wrong) wrong = "is not one of its values";
     }
-    const auto named = std::ranges::find(column.names, text);
-    if (wrong && named != column.names.end())
-        real = static_cast<double>(
-            column.number(static_cast<std::size_t>(named - column.names.begin())));
-    else if (wrong)
-        fail(code::cell_is_no_number, cell,
-             fmt::format("'{}' in column '{}' {}", text, column.title, wrong), help_with(column));
-    append(column.values, real);
+    fail(code::cell_is_no_number, cell,
+         fmt::format("'{}' in column '{}' {}", text, column.title, wrong), help_with(column));
+    append(column.values, missing);
 }
 
 void CsvReader::end_of_rows() {
@@ -447,6 +377,8 @@ void CsvReader::drop_last_row() {
         column.values.resize(table_.rows);
         if (!column.large.empty() && column.large.back().row == table_.rows)
             column.large.pop_back();
+        if (!column.not_numbers.empty() && column.not_numbers.back() == table_.rows)
+            column.not_numbers.pop_back();
     }
 }
 

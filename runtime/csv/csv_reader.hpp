@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -18,23 +20,28 @@ struct CsvColumn {
     std::string name;   ///< of the signal where the sidecar tells it, else the title without unit
     std::string title;  ///< as the header has it
     std::string unit;  ///< from the sidecar, or from a title `name [unit]`; empty: none, or unknown
-    Type type = Type::real;             ///< from the sidecar; without one all are real
-    std::vector<std::string> names;     ///< of an enumeration; cells may have them
-    std::vector<std::int64_t> numbers;  ///< of the names; empty: 0, 1, 2, ...
-    std::vector<double> values;         ///< a row each; not a number where the cell is empty
+    Type type = Type::real;          ///< from the sidecar; without one all are real
+    std::vector<std::string> names;  ///< of an enumeration; cells may have them
+    std::vector<Wide> numbers;       ///< of the names; empty: 0, 1, 2, ...
+    std::vector<double> values;      ///< a row each; not a number where the cell is empty, too
 
     struct Large {
         std::size_t row;
         Wide value;
     };
-    std::vector<Large> large;  ///< integers from 2^53 on, which `values` rounds; by row
+    std::vector<Large> large;              ///< integers from 2^53 on, which `values` rounds; by row
+    std::vector<std::size_t> not_numbers;  ///< rows whose cell is NaN; from the first on
 
     /// Of the name that stands at `place`.
-    std::int64_t number(std::size_t place) const {
-        return numbers.empty() ? static_cast<std::int64_t>(place) : numbers[place];
+    Wide number(std::size_t place) const {
+        return numbers.empty() ? static_cast<Wide>(place) : numbers[place];
     }
-    bool is_missing(std::size_t row) const { return values[row] != values[row]; }
-    /// Exact, of 64 bits with or without a sign; 0 where the cell is empty. Of type integer only.
+    /// The cell is empty.
+    bool is_missing(std::size_t row) const {
+        return values[row] != values[row] && !std::ranges::binary_search(not_numbers, row);
+    }
+    bool is_finite(std::size_t row) const { return std::isfinite(values[row]); }
+    /// Exact, of 64 bits with or without a sign; 0 where the cell is empty. Not of reals.
     Wide integer(std::size_t row) const;
 };
 
@@ -63,10 +70,11 @@ struct CsvOptions {
 };
 
 /// Reads a CSV file (RFC 4180) whose first line names its columns and whose cells are numbers,
-/// or names of them, empty where a value is missing: a trace, or what another tool wrote. Quoted
-/// cells, lines that end with CR LF or CR, a byte order mark and blanks around numbers are taken;
-/// with semicolons between cells the decimal point may be a comma. A pipe will do. Empty when
-/// anything is wrong; then `out` says what, at most 20 mistakes:
+/// or names of them, empty where a value is missing: a trace, or what another tool wrote. Reals may
+/// be NaN, INF and -INF, or nan, inf, infinity; times may not. Quoted cells, lines that end with CR
+/// LF or CR, a byte order mark and blanks around numbers are taken; with semicolons between cells
+/// the decimal point may be a comma. A pipe will do. Empty when anything is wrong; then `out` says
+/// what, at most 20 mistakes:
 ///   L0001  the file cannot be read
 ///   L0701  empty file, a first line that names no columns, or a program (YAML)
 ///   L0702  a column that was asked for is not there

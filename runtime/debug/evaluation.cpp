@@ -178,9 +178,10 @@ class Reckoning {
 
     /// Names and numbers are those of the enumeration.
     static bool is_called(const st::Type& type, const ValueNames& names) {
-        const std::vector<std::int64_t> numbers = names.odd_numbers();
-        return std::ranges::equal(type.values, names) &&
-               (type.counted ? numbers.empty() : type.numbers == numbers);
+        if (!std::ranges::equal(type.values, names)) return false;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (type.numbers[i] != names.number(i)) return false;
+        return true;
     }
 
     /// Of another block of the program.

@@ -230,6 +230,13 @@ void FitReader::samples(const FitCasePlan& plan, const CsvTable& table, const Cs
     for (std::size_t row = 0; row < table.rows; ++row) {
         const auto is_missing = [row](const CsvColumn* c) { return c->is_missing(row); };
         if (time.is_missing(row) || std::ranges::any_of(columns, is_missing)) continue;
+        for (const CsvColumn* column : columns)
+            if (!column->is_finite(row))
+                return read_.fail(
+                    code::measurement_cannot_be_compared, plan.trace.place,
+                    fmt::format("'{}' in line {} of column '{}' is no measurement",
+                                format_number(column->values[row]), line_of(row), column->name),
+                    "leave the cell empty where there is no value");
         const auto at = time_of(time, row, seconds, plan.trace.offset, read_, plan.trace.file);
         if (!at) return;
         cell.times.push_back(*at);

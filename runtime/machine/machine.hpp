@@ -149,8 +149,9 @@ struct Force {
     std::byte* published = nullptr;    ///< null where it is the live one
     const std::byte* block = nullptr;  ///< that it belongs to; null for an input of the program
     bool is_output = false;            ///< else its block reads it
-    bool is_local = false;             ///< an output that its block reads
-    int task = -1;                     ///< of the block
+    bool stays =
+        false;      ///< a variable of a program: its block reads it, and it stays behind the force
+    int task = -1;  ///< of the block
     Type type = Type::real;
     Value value;
     std::string name, value_text = {};  ///< `slave.ratio`, `2`

@@ -45,9 +45,10 @@ struct Field {
     bool minimum_excluded = false;
     bool maximum_excluded = false;
     bool required = false;
-    std::string_view refers = {};  ///< of a reference: the type that it takes
-    std::string_view global = {};  ///< of a reference: it takes the block of that name, and no
-                                   ///< program writes it down
+    bool takes_not_finite = false;  ///< INF, -INF and NaN, whatever the limits: a REAL of a program
+    std::string_view refers = {};   ///< of a reference: the type that it takes
+    std::string_view global = {};   ///< of a reference: it takes the block of that name, and no
+                                    ///< program writes it down
 
     /// Limits of a constant in the program file; a wired value is the block's own business.
     constexpr Field above(double limit) const {
@@ -87,6 +88,7 @@ struct Field {
 
     bool admits(const Value& value) const {
         if (type == Type::enumeration) return names.takes(std::get<std::int64_t>(value));
+        if (takes_not_finite && !std::isfinite(as_real(value))) return true;
         const auto from_minimum = compare(value, minimum), from_maximum = compare(value, maximum);
         return (minimum_excluded ? from_minimum > 0 : from_minimum >= 0) &&
                (maximum_excluded ? from_maximum < 0 : from_maximum <= 0);

@@ -21,12 +21,20 @@ std::string_view name_in(std::string_view text, std::string_view type) {
     return is_its ? text.substr(end + 1) : text;
 }
 
-std::optional<std::int64_t> read_number(std::string_view text) {
-    std::int64_t number = 0;
+template <class T>
+std::optional<Wide> read_number(std::string_view text) {
+    T number = 0;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, number);
     if (error != std::errc{} || stop != end) return {};
     return number;
+}
+
+/// As it is stored.
+std::optional<std::int64_t> read_number(std::string_view text, const ValueNames& names) {
+    const auto number =
+        names.has_sign() ? read_number<std::int64_t>(text) : read_number<std::uint64_t>(text);
+    return number ? names.stored(*number) : std::nullopt;
 }
 
 /// `Idle (0), Run (10)`
@@ -34,7 +42,8 @@ std::string list_of(const ValueNames& names) {
     std::string text;
     std::size_t place = 0;
     for (const std::string_view name : names) {
-        text += fmt::format("{}{} ({})", place == 0 ? "" : ", ", name, names.number(place));
+        text += fmt::format("{}{} ({})", place == 0 ? "" : ", ", name,
+                            names.whole(names.number(place)));
         ++place;
     }
     return text;
@@ -44,7 +53,7 @@ std::optional<Value> read_name(const Reader& read, const Node& node, const Field
     if (!read.expect_scalar(node, "a name")) return {};
     if (const auto number = field.names.find(name_in(node.text, field.names.type())))
         return Value(*number);
-    const auto number = read_number(node.text);
+    const auto number = read_number(node.text, field.names);
     const bool is_number = number && field.names.may_be_written_as_numbers();
     if (is_number && field.names.takes(*number)) return Value(*number);
     std::vector<std::string> names(field.names.begin(), field.names.end());

@@ -67,7 +67,8 @@ std::string describe(const Value& value, Type type, const ValueNames& names,
         const auto number = std::get<std::int64_t>(value);
         const std::string_view name = names.of(number);
         const bool is_of_no_letters = !names.may_be_written_as_numbers() && names.takes(number);
-        return name.empty() && !is_of_no_letters ? format(value) : std::string(name);
+        return name.empty() && !is_of_no_letters ? fmt::format("{}", names.whole(number))
+                                                 : std::string(name);
     }
     std::string text = format(value);
     if (!unit.empty()) text.append(" ").append(unit);

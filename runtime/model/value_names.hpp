@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/source/wide.hpp"
+
 namespace lineshaft {
 
 /// What an enumeration's numbers are called. As a list it is the names.
@@ -38,18 +40,39 @@ class ValueNames {
         return made;
     }
 
+    /// Numbers are stored as 64 bits without a sign: those from 2^63 on are values, too.
+    constexpr ValueNames without_sign() const {
+        ValueNames made = *this;
+        made.has_sign_ = false;
+        return made;
+    }
+
+    constexpr bool has_sign() const { return has_sign_; }
+    /// What a stored number counts.
+    constexpr Wide whole(std::int64_t stored) const {
+        return has_sign_ ? Wide{stored} : Wide{static_cast<std::uint64_t>(stored)};
+    }
+    /// How a number is stored; empty where 64 bits cannot hold it.
+    constexpr std::optional<std::int64_t> stored(Wide number) const {
+        const auto bits = static_cast<std::int64_t>(number);
+        return whole(bits) == number ? std::optional(bits) : std::nullopt;
+    }
+
     constexpr std::string_view type() const { return type_; }
     constexpr bool may_be_written_as_numbers() const { return !numbers_.empty(); }
-    /// Of the name that stands at `place`.
+    /// Of the name that stands at `place`, as it is stored.
     constexpr std::int64_t number(std::size_t place) const {
         return numbers_.empty() ? static_cast<std::int64_t>(place) : numbers_[place];
     }
-    /// What they are where they are not 0, 1, 2, ...; else none.
-    std::vector<std::int64_t> odd_numbers() const {
-        for (std::size_t i = 0; i < numbers_.size(); ++i)
-            if (numbers_[i] != static_cast<std::int64_t>(i))
-                return {numbers_.begin(), numbers_.end()};
-        return {};
+    /// What they count where they are not 0, 1, 2, ...; else none.
+    std::vector<Wide> odd_numbers() const {
+        std::vector<Wide> counted;
+        bool is_odd = false;
+        for (std::size_t i = 0; i < numbers_.size(); ++i) {
+            counted.push_back(whole(numbers_[i]));
+            is_odd = is_odd || counted[i] != static_cast<Wide>(i);
+        }
+        return is_odd ? counted : std::vector<Wide>();
     }
     /// Empty: none is called so.
     constexpr std::optional<std::int64_t> find(std::string_view name) const {
@@ -71,7 +94,7 @@ class ValueNames {
     }
     /// Whether each value is one of the other, under the same names.
     bool fits(const ValueNames& other) const {
-        if (!std::ranges::equal(names_, other.names_)) return false;
+        if (!std::ranges::equal(names_, other.names_) || has_sign_ != other.has_sign_) return false;
         for (std::size_t i = 0; i < names_.size(); ++i)
             if (number(i) != other.number(i)) return false;
         return least_ > most_ || (least_ >= other.least_ && most_ <= other.most_);
@@ -82,6 +105,7 @@ class ValueNames {
     std::span<const std::string_view> names_;
     std::span<const std::int64_t> numbers_;
     std::int64_t least_ = 0, most_ = -1;
+    bool has_sign_ = true;
 };
 
 }  // namespace lineshaft

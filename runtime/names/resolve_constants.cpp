@@ -154,7 +154,7 @@ bool set_cell(const Resolving& to, const Instance& block, const Field& column,
     const Unit& due = to.net.unit_of(block, column.unit);
     const auto unit = from.unit.empty() ? std::optional(due) : Unit::parse(from.unit);
     const double value = unit ? convert(from.values[row], *unit, due) : from.values[row];
-    const bool real = column.type == Type::real;
+    const bool real = column.type == Type::real && std::isfinite(value);
     const bool whole = value == std::trunc(value) && std::abs(value) < 9e15;
     const Value cell = real ? Value(value) : Value(whole ? static_cast<std::int64_t>(value) : -1);
     if (!unit || !unit->same_dimension(due) || !(real || whole) || !column.admits(cell)) {

@@ -34,16 +34,19 @@ bool may_be_written(ModbusTable table) {
 /// The smallest that has an enumeration's numbers; one register where these are not negative,
 /// without a sign.
 std::string_view usual_type(const ValueNames& names) {
-    std::int64_t least = 0, most = 0;
+    Wide least = 0, most = 0;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        least = std::min(least, names.number(i));
-        most = std::max(most, names.number(i));
+        least = std::min(least, names.whole(names.number(i)));
+        most = std::max(most, names.whole(names.number(i)));
     }
-    const auto has = [&]<class T>(T) { return std::in_range<T>(least) && std::in_range<T>(most); };
+    const auto has = [&]<class T>(T) {
+        return least >= std::numeric_limits<T>::min() && most <= std::numeric_limits<T>::max();
+    };
     if (has(std::uint16_t{})) return "uint16";
     if (has(std::int16_t{})) return "int16";
     if (has(std::uint32_t{})) return "uint32";
-    return has(std::int32_t{}) ? "int32" : "int64";
+    if (has(std::int32_t{})) return "int32";
+    return names.has_sign() ? "int64" : "uint64";
 }
 
 std::string_view usual_type(const Signal& signal) {

@@ -140,16 +140,18 @@ std::optional<Target> find_forceable(const Connecting& to, const Node& signal) {
 }
 
 Force force_of(const Machine& machine, const Target& target, const Value& value, std::string text) {
-    const std::byte* of_block =
+    const BlockPlace* place =
         target.is_of_block()
-            ? machine.blocks[static_cast<std::size_t>(target.signal.port.instance)].live
+            ? &machine.blocks[static_cast<std::size_t>(target.signal.port.instance)]
             : nullptr;
+    const bool is_output = place && target.field.direction != Direction::input;
+    const bool is_of_program = place && place->type->owner;
     const bool split = target.published != target.live;
     return {.live = target.live,
             .published = split ? target.published : nullptr,
-            .block = of_block,
-            .is_output = of_block && target.field.direction != Direction::input,
-            .is_local = of_block && target.field.direction == Direction::local,
+            .block = place ? place->live : nullptr,
+            .is_output = is_output,
+            .stays = is_output && (is_of_program || target.field.direction == Direction::local),
             .task = target.signal.task,
             .type = target.field.type,
             .value = value,

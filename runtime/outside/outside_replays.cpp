@@ -37,6 +37,10 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
     const bool same_unit = from.text == to.text;
     if (is_integer(input.type) && column.type == Type::integer && same_unit)
         return whole_value(column.integer(row), input.type);
+    if (input.type == Type::enumeration && column.type != Type::real) {
+        const auto stored = input.names.stored(column.integer(row));
+        return stored && input.names.takes(*stored) ? std::optional<Value>(*stored) : std::nullopt;
+    }
     const double value = column.values[row];
     const auto among = [&](std::size_t count) {
         return value >= 0 && value < static_cast<double>(count);
@@ -56,7 +60,8 @@ std::optional<Value> cell(const CsvColumn& column, std::size_t row, const Field&
             break;
     }
     const double converted = same_unit ? value : convert(value, from, to);
-    return std::isfinite(converted) ? std::optional<Value>(converted) : std::nullopt;
+    const bool is_beyond = std::isfinite(value) && !std::isfinite(converted);
+    return is_beyond ? std::nullopt : std::optional<Value>(converted);
 }
 
 /// What the file says, else `wanted`; both measure the same, or it is L0303.

@@ -52,7 +52,7 @@ void save(StateWriter& out, const Machine& machine, const Force& force) {
     out.put(force.from);
     out.put(force.until);
     out.put(force.is_output);
-    out.put(force.is_local);
+    out.put(force.stays);
     out.put(force.task);
     put_value(out, force.type, force.value);
     out.put(force.name);
@@ -66,7 +66,7 @@ void restore(StateReader& in, Machine& machine, Force& force) {
     in.get(force.from);
     in.get(force.until);
     in.get(force.is_output);
-    in.get(force.is_local);
+    in.get(force.stays);
     in.get(force.task, -1, static_cast<int>(machine.tasks.size()) - 1);
     get_value(in, force.type, force.value);
     in.get(force.name);

@@ -140,6 +140,16 @@ Expectation expectation(const Connecting& to, const ExpectPlan& plan, const Sign
 }  // namespace
 
 std::optional<Value> read_bound(const Connecting& to, const Signal& signal, const Node& node) {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    if (signal.type == Type::real && node.is_scalar()) {
+        if (node.text == "INF") return infinite;
+        if (node.text == "-INF") return -infinite;
+        if (node.text == "NaN") {
+            to.read.fail(code::not_a_number, node, "no comparison with NaN is ever fulfilled",
+                         "let the program tell: is_nan := x <> x");
+            return {};
+        }
+    }
     Field field;
     field.name = signal.name;
     field.type = signal.type;

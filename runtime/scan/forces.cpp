@@ -76,6 +76,7 @@ void Forces::end(std::size_t index) {
     const Force& force = forces_[index];
     Own& own = own_[index];
     own.active = false;
+    if (force.stays) return;
     std::memcpy(force.live, own.live, size_of(force.type));
     if (force.published) std::memcpy(force.published, own.published, size_of(force.type));
 }
@@ -85,7 +86,7 @@ void Forces::exchange(const std::byte* block, bool outputs, Way way) {
         const Force& force = forces_[i];
         if (!own_[i].active || force.block != block || force.is_output != outputs) continue;
         if (way == Way::lift) {
-            if (force.is_local) continue;
+            if (force.stays) continue;
             std::memcpy(force.live, own_[i].live, size_of(force.type));
         } else {
             std::memcpy(own_[i].live, force.live, size_of(force.type));

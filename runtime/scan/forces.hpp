@@ -9,10 +9,12 @@
 
 namespace lineshaft {
 
-/// Keeps forced signals at their values. What the program writes meanwhile (its own value) is kept
-/// beside: a block's own outputs are back in place while it runs, so that it does not see the force
-/// in its memory (in its locals it does: nobody else reads them), and all are back when the force
-/// has ended.
+/// Keeps forced signals at their values. What is written to them meanwhile (their own value) is
+/// kept beside: a block of the catalogue has its own outputs in place while it runs, so that it
+/// does not see the force in its memory, and all are back when the force has ended. Variables of a
+/// program in Structured Text are forced as controllers do: the program reads the force, at the end
+/// of each scan the variable has its value again, and behind the force it stays until the program
+/// writes it.
 class Forces {
   public:
     /// `forces` may grow, and times of its members change, if look_ahead() or forget_ended() is

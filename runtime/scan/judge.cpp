@@ -160,6 +160,7 @@ void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64
         deviation += ", before the first scan";
     else if (scan && *scan >= 0)
         deviation += fmt::format(", scan {}", *scan);
+    if (std::isnan(as_real(value))) deviation += ", and no comparison with NaN is fulfilled";
     fail(index, deviation + fmt::format("; expected {}", e.wanted));
 }
 

@@ -7,6 +7,7 @@
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
+#include "runtime/trace/csv_sidecar.hpp"
 #include "runtime/version.hpp"
 
 namespace lineshaft {
@@ -105,7 +106,8 @@ Json object(Json properties, Json required = Json::array()) {
     return schema;
 }
 
-const Json any_value{{"description", "true, an enumeration's name, a number, null if not finite"}};
+const Json any_value{
+    {"description", "true, an enumeration's name, a number; NaN, INF or -INF as a text"}};
 
 Json values_schema(const char* doc) {
     return {{"type", "object"}, {"description", doc}, {"additionalProperties", any_value}};
@@ -285,8 +287,8 @@ ApiReply Api::signals(const ApiRequest&) {
                         {"settable", desk_.is_settable(signal.name)},
                         {"traced", is_traced(loaded_.linked, signal)}});
         if (!signal.names.empty()) list.back()["names"] = signal.names.list();
-        if (const auto numbers = signal.names.odd_numbers(); !numbers.empty())
-            list.back()["numbers"] = numbers;
+        if (Json numbers = numbers_json(signal.names); !numbers.empty())
+            list.back()["numbers"] = std::move(numbers);
     }
     return {200, std::move(list)};
 }

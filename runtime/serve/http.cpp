@@ -8,6 +8,7 @@
 
 #include "runtime/run/signal_json.hpp"
 #include "runtime/serve/http_session.hpp"
+#include "runtime/trace/csv_sidecar.hpp"
 
 namespace lineshaft {
 
@@ -34,8 +35,8 @@ Json heading(const Stream& stream) {
                            {"unit", signal->unit},
                            {"type", name_of(signal->type)},
                            {"names", signal->names.list()}});
-        if (const auto numbers = signal->names.odd_numbers(); !numbers.empty())
-            signals.back()["numbers"] = numbers;
+        if (Json numbers = numbers_json(signal->names); !numbers.empty())
+            signals.back()["numbers"] = std::move(numbers);
     }
     return signals;
 }
@@ -50,7 +51,7 @@ std::string rows(Stream& stream, std::int64_t& lost) {
             const Signal& signal = *stream.signals()[i];
             const Value value = value_of(signal, words[i]);
             values[i].push_back(signal.type == Type::enumeration
-                                    ? Json(std::get<std::int64_t>(value))
+                                    ? stored_json(signal.names, std::get<std::int64_t>(value))
                                     : to_json(signal, value));
         }
     });

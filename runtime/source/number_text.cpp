@@ -1,10 +1,12 @@
 #include "runtime/source/number_text.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "runtime/source/shortest_digits.hpp"
 
@@ -109,6 +111,11 @@ char* write_scientific(char* to, const Digits& digits) {
     return std::to_chars(to, to + 3, size).ptr;
 }
 
+char* write_not_finite(char* to, double value) {
+    const std::string_view text = std::isnan(value) ? "NaN" : value < 0 ? "-INF" : "INF";
+    return std::ranges::copy(text, to).out;
+}
+
 }  // namespace
 
 char* write_integer(char* to, std::int64_t value) {
@@ -121,7 +128,7 @@ char* write_unsigned(char* to, std::uint64_t value) {
 
 char* write_real(char* to, double value) {
     if (is_small_integer(value)) return write_integer(to, static_cast<std::int64_t>(value));
-    if (!std::isfinite(value)) return to;
+    if (!std::isfinite(value)) return write_not_finite(to, value);
     *to = '-';
     to += std::signbit(value) ? 1 : 0;
     if (value == 0) return write_integer(to, 0);

@@ -13,7 +13,7 @@ char* write_integer(char* to, std::int64_t value);
 char* write_unsigned(char* to, std::uint64_t value);
 
 /// The shortest decimal number that reads back as the same double; with an exponent below 1e-4 and
-/// from 1e16 on. Nothing for what is not finite.
+/// from 1e16 on. What is not finite is NaN, INF or -INF, as CSVW and XML Schema have it.
 char* write_real(char* to, double value);
 
 /// Integer nanoseconds as seconds, exact: `-0.00125`.

@@ -372,7 +372,6 @@ std::optional<std::int64_t> to_nanoseconds(const Quantity& quantity) {
 }
 
 std::string format_number(double value) {
-    if (!std::isfinite(value)) return fmt::format("{}", value);
     std::array<char, longest_number> text{};
     return {text.data(), write_real(text.data(), value)};
 }

@@ -24,15 +24,22 @@ double distance(Wide a, Wide b) {
     return static_cast<double>(a > b ? a - b : b - a);
 }
 
+bool are_finite(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
+    return a.is_finite(row) && b.is_finite(row);
+}
+
+/// A cell that is empty, NaN, INF or -INF is the same as such a one only.
 bool deviates(const CsvColumn& a, const CsvColumn& b, std::size_t row, double tolerance) {
-    if (a.is_missing(row) || b.is_missing(row)) return a.is_missing(row) != b.is_missing(row);
-    if (a.type == Type::integer) return distance(a.integer(row), b.integer(row)) > tolerance;
+    if (std::isnan(a.values[row]) && std::isnan(b.values[row]))
+        return a.is_missing(row) != b.is_missing(row);
+    if (!are_finite(a, b, row)) return a.values[row] != b.values[row];
+    if (a.type != Type::real) return distance(a.integer(row), b.integer(row)) > tolerance;
     return std::abs(a.values[row] - b.values[row]) > tolerance;
 }
 
 double distance(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
-    if (a.is_missing(row) || b.is_missing(row)) return 0;
-    if (a.type == Type::integer) return distance(a.integer(row), b.integer(row));
+    if (!are_finite(a, b, row)) return 0;
+    if (a.type != Type::real) return distance(a.integer(row), b.integer(row));
     return std::abs(a.values[row] - b.values[row]);
 }
 
@@ -161,8 +168,9 @@ TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& 
             if (!deviates(x, y, row, tolerance[i])) continue;
             ++result.cells;
             if (!result.first) result.first = {row, i};
+            if (x.type != Type::real || !are_finite(x, y, row)) continue;
             const double distance = std::abs(x.values[row] - y.values[row]);
-            if (x.type != Type::real || !(distance > greatest)) continue;
+            if (!(distance > greatest)) continue;
             greatest = distance;
             result.greatest = {row, i};
         }

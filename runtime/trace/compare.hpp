@@ -59,7 +59,7 @@ void check_comparable(const CsvTable& a, const CsvTable& b, bool same_program, D
 void keep_common(CsvTable& a, CsvTable& b);
 
 /// Compares two comparable tables cell by cell, as far as both have rows. A missing value equals a
-/// missing one only.
+/// missing one only, NaN equals NaN, an infinite value the same one.
 TraceComparison compare(const CsvTable& a, const CsvTable& b, const Tolerances& tolerances);
 
 /// How many doubles lie between two finite ones, and one more; 0 for equal ones, and for 0 and -0.

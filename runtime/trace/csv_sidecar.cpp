@@ -31,8 +31,8 @@ Json csvw_column(const Signal& signal, const std::string& title) {
     if (signal.type == Type::boolean) column["datatype"] = {{"base", "boolean"}, {"format", "1|0"}};
     if (!signal.unit.empty()) column["unit"] = signal.unit;
     if (!signal.names.empty()) column["values"] = signal.names.list();
-    if (const auto numbers = signal.names.odd_numbers(); !numbers.empty())
-        column["lineshaft:numbers"] = numbers;
+    if (Json numbers = numbers_json(signal.names); !numbers.empty())
+        column["lineshaft:numbers"] = std::move(numbers);
     return column;
 }
 
@@ -48,6 +48,17 @@ Json csvw_columns(const WrittenTable& table) {
 }
 
 }  // namespace
+
+Json numbers_json(const ValueNames& names) {
+    Json list = Json::array();
+    for (const Wide number : names.odd_numbers()) {
+        if (number < 0)
+            list.push_back(static_cast<std::int64_t>(number));
+        else
+            list.push_back(static_cast<std::uint64_t>(number));
+    }
+    return list;
+}
 
 std::string title_of(const CsvStyle& style, std::string_view name, std::string_view unit) {
     std::string text(name);

@@ -43,6 +43,9 @@ struct WrittenTable {
     std::string crc32;  ///< Checksum of its bytes
 };
 
+/// What an enumeration's names count, as a list; empty where that is 0, 1, 2, ...
+nlohmann::ordered_json numbers_json(const ValueNames& names);
+
 /// A column's title.
 std::string title_of(const CsvStyle& style, std::string_view name, std::string_view unit);
 

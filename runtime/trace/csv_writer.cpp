@@ -20,6 +20,12 @@ char* append(char* end, Type type, std::uint64_t bits) {
                                           : write_integer(end, static_cast<std::int64_t>(bits));
 }
 
+/// An enumeration's number as what it counts.
+Type written_as(const Signal& signal) {
+    const bool has_sign = signal.type != Type::enumeration || signal.names.has_sign();
+    return has_sign ? signal.type : Type::unsigned_integer;
+}
+
 }  // namespace
 
 CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& style)
@@ -54,7 +60,7 @@ void CsvWriter::save(StateWriter& out) {
 }
 
 void CsvWriter::make_room() {
-    for (const Signal& signal : signals_) cells_.push_back({.type = signal.type});
+    for (const Signal& signal : signals_) cells_.push_back({.type = written_as(signal)});
     longest_row_ = static_cast<std::ptrdiff_t>((2 + signals_.size()) * (longest_number + 1));
     text_.resize(static_cast<std::size_t>(longest_row_) + written_at_once);
 }

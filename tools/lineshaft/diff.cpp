@@ -55,13 +55,13 @@ Tolerances read_tolerances(const std::vector<std::string>& texts, const CsvTable
 
 std::string cell(const CsvColumn& column, std::size_t row) {
     if (column.is_missing(row)) return "";
-    if (column.type == Type::integer) return fmt::format("{}", column.integer(row));
+    if (column.type != Type::real) return fmt::format("{}", column.integer(row));
     return format_number(column.values[row]);
 }
 
 std::string distance(const CsvColumn& a, const CsvColumn& b, std::size_t row) {
     if (a.is_missing(row) || b.is_missing(row)) return "a value is missing";
-    if (a.type != Type::real) return "";
+    if (a.type != Type::real || !a.is_finite(row) || !b.is_finite(row)) return "";
     const double x = a.values[row], y = b.values[row];
     return fmt::format("{} apart, {} ulp", format_number(std::abs(x - y)), ulp_distance(x, y));
 }
@@ -129,15 +129,20 @@ void print_text(const DiffCommand& command, const CsvTable& a, const CsvTable& b
     print_summary(a, found);
 }
 
+/// Null where the cell is empty.
+nlohmann::ordered_json cell_json(const CsvColumn& column, std::size_t row) {
+    return column.is_missing(row) ? nlohmann::ordered_json() : real_json(column.values[row]);
+}
+
 nlohmann::ordered_json to_json(const CsvTable& a, const CsvTable& b, const Deviation& deviation) {
     const auto [row, index] = deviation;
     const CsvColumn &x = a.columns[index], &y = b.columns[index];
     nlohmann::ordered_json object{{"row", row + 1},
                                   {"column", x.name},
                                   {"unit", x.unit},
-                                  {"a", json_number(x.values[row])},
-                                  {"b", json_number(y.values[row])}};
-    if (x.type == Type::real && !x.is_missing(row) && !y.is_missing(row))
+                                  {"a", cell_json(x, row)},
+                                  {"b", cell_json(y, row)}};
+    if (x.type == Type::real && x.is_finite(row) && y.is_finite(row))
         object["ulp"] = ulp_distance(x.values[row], y.values[row]);
     if (const CsvColumn* scan = a.find("scan")) object["scan"] = json_number(scan->values[row]);
     if (const CsvColumn* time = a.find("time")) object["time_s"] = json_number(time->values[row]);

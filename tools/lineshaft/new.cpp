@@ -11,12 +11,13 @@ namespace lineshaft {
 
 namespace {
 
-/// {0} is the file's name without its ending.
+/// {0} is the file's name without its ending, {1} to {3} are it and what is made of it as a shell
+/// takes them.
 constexpr const char* program_text =
     R"(# {0}: one axis, and one command to it. Try, and then change:
-#   lineshaft run {0}.yaml --trace {0}.csv       expectations, and the trace below
-#   lineshaft report {0}.csv -o {0}.html         a page to look at
-#   lineshaft test {0}.yaml                      the same as a regression test
+#   lineshaft run {1} --trace {2}       expectations, and the trace below
+#   lineshaft report {2} -o {3}         a page to look at
+#   lineshaft test {1}                      the same as a regression test
 #   lineshaft blocks MC_MoveAbsolute             a block's pins; lineshaft form: all that a program may say
 lineshaft: 1
 title: One axis, one move
@@ -55,6 +56,11 @@ struct NewCommand {
     bool quiet = false;
 };
 
+std::string first_program(const std::string& name) {
+    return fmt::format(program_text, name, shell_word(name + ".yaml"), shell_word(name + ".csv"),
+                       shell_word(name + ".html"));
+}
+
 Exit execute(const NewCommand& command) {
     std::filesystem::path path = command.name;
     if (path.extension() == ".yml") path.replace_extension();
@@ -65,9 +71,8 @@ Exit execute(const NewCommand& command) {
         return Exit::wrong;
     }
     Diagnostics out;
-    const std::string text = command.project.empty()
-                                 ? fmt::format(program_text, path.stem().string())
-                                 : program_around(command.project, path, out);
+    const std::string text = command.project.empty() ? first_program(path.stem().string())
+                                                     : program_around(command.project, path, out);
     if (!out.empty() || !out.warnings().empty()) report(out, false);
     if (!out.empty()) return Exit::wrong;
     const std::string option =
@@ -76,6 +81,7 @@ Exit execute(const NewCommand& command) {
     file.write(text);
     if (!file.commit()) {
         spdlog::error("{}", file.error());
+        file.discard();
         return Exit::fault;
     }
     if (!command.quiet)

@@ -27,8 +27,8 @@ struct PlotCommand {
 struct PlotGroup {
     std::string unit;
     Type type = Type::real;
-    std::vector<std::string> names;     ///< of an enumeration
-    std::vector<std::int64_t> numbers;  ///< of the names; empty: 0, 1, 2, ...
+    std::vector<std::string> names;  ///< of an enumeration
+    std::vector<Wide> numbers;       ///< of the names; empty: 0, 1, 2, ...
     std::vector<std::string> signals;
 };
 

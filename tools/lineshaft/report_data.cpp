@@ -154,9 +154,28 @@ Json packed_json(std::span<const double> samples, std::string& bytes) {
             {"width", packed.width}, {"outliers", packed.outliers}, {"missing", packed.missing}};
 }
 
-Json packed_signal(std::span<const double> samples, std::string& bytes) {
-    Json packed = packed_json(samples, bytes);
-    packed["extremes"] = packed_json(chunk_extremes(samples), bytes);
+/// What the page draws as missing, and shows as what it is: first, count and text of each stretch.
+Json stretches_not_finite(const CsvColumn& column) {
+    Json list = Json::array();
+    for (std::size_t row = 0; row < column.values.size(); ++row) {
+        if (column.is_finite(row) || column.is_missing(row)) continue;
+        const std::string text = format_number(column.values[row]);
+        const bool goes_on =
+            !list.empty() && list.back()[2] == text &&
+            list.back()[0].get<std::size_t>() + list.back()[1].get<std::size_t>() == row;
+        if (goes_on)
+            list.back()[1] = list.back()[1].get<std::size_t>() + 1;
+        else
+            list.push_back({row, 1, text});
+    }
+    return list;
+}
+
+Json packed_signal(const CsvColumn& column, std::string& bytes) {
+    Json packed = packed_json(column.values, bytes);
+    packed["extremes"] = packed_json(chunk_extremes(column.values), bytes);
+    if (Json odd = stretches_not_finite(column); !odd.empty())
+        packed["not_finite"] = std::move(odd);
     return packed;
 }
 
@@ -228,9 +247,10 @@ nlohmann::ordered_json to_json(const ReportRun& run) {
         Json signal{{"name", column->name},
                     {"unit", column->unit},
                     {"type", name_of(column->type)},
-                    {"data", packed_signal(column->values, bytes)}};
+                    {"data", packed_signal(*column, bytes)}};
         if (!column->names.empty()) signal["names"] = column->names;
-        if (!column->numbers.empty()) signal["numbers"] = column->numbers;
+        for (const Wide number : column->numbers)
+            signal["numbers"].push_back(static_cast<double>(number));
         signals.push_back(std::move(signal));
     }
     const auto& metadata = run.table.metadata;

@@ -33,6 +33,10 @@ except ImportError:
 __all__ = ["run", "study", "read_trace", "Run", "Study", "Trace", "Error", "ProgramError", "ExpectationError", "Fault"]
 
 
+# What JSON has no numbers for.
+_NOT_FINITE = {text: float(text) for text in ("NaN", "INF", "-INF")}
+
+
 class Error(Exception):
     """What lineshaft said; `diagnostics` has each with its code, file, line, column and help."""
 
@@ -90,7 +94,8 @@ class Run:
     """What came of a run. `traces` has one by name for each of the program's `traces:`, `trace` is that of `trace:`."""
 
     def __init__(self, answer, traces):
-        self.signals = answer["signals"]
+        self.signals = {name: _NOT_FINITE.get(value, value) if isinstance(value, str) else value
+                        for name, value in answer["signals"].items()}
         self.expectations = answer["expect"]
         self.warnings = answer["warnings"]
         self.scans = answer["scans"]

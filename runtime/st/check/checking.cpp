@@ -52,6 +52,12 @@ void Checking::note(Place at, const NamedType& named) {
     if (named.type) note(at, *named.type, named.declaration->name.place);
 }
 
+void Checking::note_value(Place at, const Type& enumeration, std::size_t value) {
+    if (!uses || !is_written(at, enumeration.values[value])) return;
+    const Place declared = value < enumeration.places.size() ? enumeration.places[value] : Place();
+    uses->push_back({last_part(at), declared, nullptr, nullptr, &enumeration, value});
+}
+
 const Prefixes* Checking::prefixes_at(Place place) const {
     const auto all = prefixes.find(place.source);
     if (all == prefixes.end()) return nullptr;

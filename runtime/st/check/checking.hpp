@@ -176,6 +176,7 @@ struct Checking {
     void note(Place at, const Routine& called);
     void note(Place at, const Type& type, Place declared = {});
     void note(Place at, const NamedType& named);
+    void note_value(Place at, const Type& enumeration, std::size_t value);
 
     /// What a name is. The prelude and libraries see nothing of the user's; what they declare he
     /// sees where he has no such name.

@@ -1,6 +1,5 @@
 #include "runtime/st/check/declarations.hpp"
 
-#include <unordered_set>
 #include <utility>
 
 #include "runtime/source/units.hpp"
@@ -143,133 +142,138 @@ bool is_copied(const Routine& routine, const Type* type) {
     return routine.has_instances() || !has_pointers;
 }
 
-void add_names(const Expression& e, std::vector<std::string_view>& to) {
-    if (e.kind == E::name) to.push_back(e.token.text);
-    for (const Expression* operand : e.operands)
-        if (operand) add_names(*operand, to);
-    for (const Argument& argument : e.arguments)
-        if (argument.value) add_names(*argument.value, to);
-}
+/// What a declaration means, of which a variable is made.
+struct Meant {
+    const Declaration& declared;
+    const Type* type = nullptr;
+    Section section = Section::local;
+    bool constant = false;
+    bool is_of_own = false;   ///< an instance of the block that declares it
+    bool is_another = false;  ///< which cannot stand in that itself
 
-/// B&R's constants may be made of those that stand further down in their list.
-class ConstantsByNeed {
-  public:
-    explicit ConstantsByNeed(const DeclarationBlock& block) {
-        for (Declaration* declared : block.declarations)
-            named_.emplace(declared->name.text, declared);
-        for (Declaration* declared : block.declarations) add(declared);
-    }
-
-    const std::vector<Declaration*>& sorted() const { return sorted_; }
-
-  private:
-    void add(Declaration* declared) {
-        constexpr int most_hops = 200;
-        if (!seen_.insert(declared).second) return;
-        std::vector<std::string_view> names;
-        if (declared->initial && hops_ < most_hops) add_names(*declared->initial, names);
-        ++hops_;
-        for (const std::string_view name : names)
-            if (const auto found = named_.find(name); found != named_.end()) add(found->second);
-        --hops_;
-        sorted_.push_back(declared);
-    }
-
-    NameMap<Declaration*> named_;
-    std::unordered_set<const Declaration*> seen_;
-    std::vector<Declaration*> sorted_;
-    int hops_ = 0;
+    bool is_static() const { return section == Section::static_ || is_another; }
+    Place place() const { return declared.name.place; }
 };
 
-std::vector<Declaration*> in_order(const DeclarationBlock& block) {
-    const bool may_be_later = block.constant && !block.declarations.empty() &&
-                              block.declarations.front()->name.place.dialect().capitals_count;
-    return may_be_later ? ConstantsByNeed(block).sorted() : block.declarations;
+const Type* declared_type(Checking& c, const TypeText* text, bool is_given) {
+    if (!text) return nullptr;
+    return is_given || refers_to_open_array(*text) ? resolve_parameter(c, *text)
+                                                   : resolve(c, *text);
+}
+
+Meant meaning_of(Checking& c, const Routine& routine, const DeclarationBlock& block,
+                 const Declaration& declared) {
+    const bool is_given = block.section == Section::in_out || block.section == Section::input ||
+                          (block.section == Section::output && !routine.has_instances());
+    const Type* type = declared_type(c, declared.type, is_given);
+    const bool is_pointed_at = is_given && type && is_variant(*type);
+    const bool is_value = takes_values(block, type) || is_pointed_at;
+    const Section section = is_value ? Section::input : block.section;
+    const Place place = declared.name.place;
+    const bool is_wide = type == &unsized_wide_string(place) && type->is_wide;
+    const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
+    if (is_value && is_unsized) type = &longer_string(c, is_wide);
+    if (section == Section::in_out && is_unsized)
+        type = is_wide ? &open_wide_string_type : &open_string_type;
+    const bool is_of_own = is_its_own_block(routine, type);
+    return {.declared = declared,
+            .type = type,
+            .section = section,
+            .constant = block.constant && !is_value,
+            .is_of_own = is_of_own,
+            .is_another = is_of_own && (section == Section::local || section == Section::temp)};
+}
+
+Variable& make_variable(Checking& c, Routine& routine, const DeclarationBlock& block,
+                        const Meant& meant) {
+    auto& all = meant.is_static() ? c.checked.variables : routine.variables;
+    Variable& variable = *add(c, all, meant.declared, meant.type);
+    variable.section = meant.is_static() ? Section::global : meant.section;
+    variable.constant = meant.constant;
+    variable.retention = meant.declared.retention;
+    variable.of = routine.pou;
+    variable.access = block.access;
+    if (meant.section == Section::in_out && !is_copied(routine, meant.type))
+        variable.space = Space::reference;
+    return variable;
+}
+
+/// Under its name, which no other variable of the routine or of a base has.
+void give_name(Checking& c, Routine& routine, Variable& variable, const Meant& meant) {
+    const auto [it, added] = routine.names.emplace(variable.text, &variable);
+    if (added && meant.is_of_own && meant.section == Section::input)
+        it->second = &take_own_instance(c, routine, variable);
+    if (added) return;
+    const Variable& other = *it->second;
+    const bool is_of_base = other.of != routine.pou;
+    const bool is_result = other.section == Section::result;
+    if (is_of_base && other.access == Access::private_)
+        it->second = &variable;  // of a base that keeps its own to itself
+    else if (is_result && meant.place().dialect().capitals_count)
+        it->second = &variable;
+    else if (differs_in_capitals(other, meant.declared.name))
+        c.by_capitals.emplace(std::pair(variable.of, variable.text), &variable);
+    else
+        c.fail(code::declared_twice, meant.place(),
+               fmt::format("'{}' is declared twice", variable.text),
+               is_of_base
+                   ? fmt::format("a base has it already, in line {}", other.name.place.mark().line)
+               : is_result ? "the function's own name is that of its result"
+                           : fmt::format("first in line {}", other.name.place.mark().line));
+}
+
+/// Instances and blocks of the program where there are none, and what has to be laid out before.
+void check_instances(Checking& c, const Routine& routine, const Variable& variable,
+                     const Meant& meant) {
+    const Type* type = meant.type;
+    const bool is_kept = routine.has_instances() || routine.is_test() || meant.is_static() ||
+                         meant.section == Section::kept || meant.section == Section::in_out;
+    if (type && type->is_instance() && !is_kept &&
+        !takes_what_others_refuse(meant.place().dialect()))
+        c.fail(code::wrong_place, meant.place(),
+               "a function keeps nothing from call to call, so it has no instances",
+               "pass the instance as VAR_IN_OUT");
+    const bool is_of_test = routine.pou->is_tests || routine.is_test();
+    const bool is_array = type && type->kind == Kind::array;
+    const bool is_lent = variable.space == Space::reference;
+    if (is_lent || (variable.space == Space::frame && (!is_of_test || is_array)))
+        refuse_object(c, meant.declared, type);
+    if (!is_lent) refuse_abstract(c, type, meant.place());
+    const bool is_only_named = (meant.is_of_own && (is_lent || meant.is_another)) ||
+                               (routine.is_prototype() && type && type->kind == Kind::block);
+    if (!is_only_named) depend(c, type, meant.place());
+}
+
+/// Where it stands: at an address, or once for all calls.
+void give_place(Checking& c, Routine& routine, Variable& variable, const Meant& meant) {
+    locate_in_image(c, variable, meant.declared);
+    const bool is_value = meant.constant && meant.type && meant.type->is_scalar();
+    if (!meant.is_static() || variable.space != Space::frame || is_value) return;
+    variable.text = c.checked.names.emplace_back(fmt::format("{}.{}", routine.name, variable.text));
+    keep_once(c, variable);
+    if (meant.is_another) begin_anew(c, routine, variable);
+}
+
+/// What else comes with it, and what it is as a constant.
+void complete(Checking& c, Routine& routine, Variable& variable, const Meant& meant) {
+    if (meant.type && meant.type->is_open_array()) declare_bounds(c, routine, variable);
+    if (routine.pou->is_tests || routine.is_test()) make_object(c, variable);
+    if (!meant.declared.type)
+        make_untyped_constant(c, variable);
+    else if (meant.constant && meant.section != Section::input)
+        make_constant(c, variable);
+    if (meant.declared.edge.word != Word::end_of_file)
+        declare_edge(c, routine, variable, meant.declared.edge);
 }
 
 void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
     for (const Declaration* declared : in_order(block)) {
-        const bool is_given = block.section == Section::in_out || block.section == Section::input ||
-                              (block.section == Section::output && !routine.has_instances());
-        const Type* type = !declared->type ? nullptr
-                           : is_given || refers_to_open_array(*declared->type)
-                               ? resolve_parameter(c, *declared->type)
-                               : resolve(c, *declared->type);
-        const bool is_pointed_at = is_given && type && is_variant(*type);
-        const bool is_value = takes_values(block, type) || is_pointed_at;
-        const Section section = is_value ? Section::input : block.section;
-        const bool constant = block.constant && !is_value;
-        const Place place = declared->name.place;
-        const bool is_wide = type == &unsized_wide_string(place) && type->is_wide;
-        const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
-        if (is_value && is_unsized) type = &longer_string(c, is_wide);
-        if (section == Section::in_out && is_unsized)
-            type = is_wide ? &open_wide_string_type : &open_string_type;
-        const bool is_of_own = is_its_own_block(routine, type);
-        const bool is_another =
-            is_of_own && (section == Section::local || section == Section::temp);
-        const bool is_static = section == Section::static_ || is_another;
-        Variable* variable =
-            add(c, is_static ? c.checked.variables : routine.variables, *declared, type);
-        variable->section = is_static ? Section::global : section;
-        variable->constant = constant;
-        variable->retention = declared->retention;
-        variable->of = routine.pou;
-        variable->access = block.access;
-        if (section == Section::in_out && !is_copied(routine, type))
-            variable->space = Space::reference;
-        const auto [it, added] = routine.names.emplace(variable->text, variable);
-        if (added && is_of_own && section == Section::input)
-            it->second = &take_own_instance(c, routine, *variable);
-        const bool is_of_base = !added && it->second->of != routine.pou;
-        const bool is_result = !added && it->second->section == Section::result;
-        if (is_of_base && it->second->access == Access::private_)
-            it->second = variable;  // of a base that keeps its own to itself
-        else if (is_result && declared->name.place.dialect().capitals_count)
-            it->second = variable;
-        else if (!added && differs_in_capitals(*it->second, declared->name))
-            c.by_capitals.emplace(std::pair(variable->of, variable->text), variable);
-        else if (!added)
-            c.fail(code::declared_twice, declared->name.place,
-                   fmt::format("'{}' is declared twice", variable->text),
-                   it->second->of != routine.pou ? fmt::format("a base has it already, in line {}",
-                                                               it->second->name.place.mark().line)
-                   : is_result
-                       ? "the function's own name is that of its result"
-                       : fmt::format("first in line {}", it->second->name.place.mark().line));
-        const bool is_kept = routine.has_instances() || routine.is_test() || is_static ||
-                             section == Section::kept || section == Section::in_out;
-        if (type && type->is_instance() && !is_kept &&
-            !takes_what_others_refuse(declared->name.place.dialect()))
-            c.fail(code::wrong_place, declared->name.place,
-                   "a function keeps nothing from call to call, so it has no instances",
-                   "pass the instance as VAR_IN_OUT");
-        const bool is_of_test = routine.pou->is_tests || routine.is_test();
-        const bool is_array = type && type->kind == Kind::array;
-        const bool is_lent = variable->space == Space::reference;
-        if (is_lent || (variable->space == Space::frame && (!is_of_test || is_array)))
-            refuse_object(c, *declared, type);
-        if (!is_lent) refuse_abstract(c, type, declared->name.place);
-        const bool is_only_named = (is_of_own && (is_lent || is_another)) ||
-                                   (routine.is_prototype() && type && type->kind == Kind::block);
-        if (!is_only_named) depend(c, type, declared->name.place);
-        locate_in_image(c, *variable, *declared);
-        const bool has_memory =
-            variable->space == Space::frame && !(constant && type && type->is_scalar());
-        if (is_static && has_memory) {
-            variable->text =
-                c.checked.names.emplace_back(fmt::format("{}.{}", routine.name, variable->text));
-            keep_once(c, *variable);
-            if (is_another) begin_anew(c, routine, *variable);
-        }
-        if (type && type->is_open_array()) declare_bounds(c, routine, *variable);
-        if (is_of_test) make_object(c, *variable);
-        if (!declared->type)
-            make_untyped_constant(c, *variable);
-        else if (constant && section != Section::input)
-            make_constant(c, *variable);
-        if (declared->edge.word != Word::end_of_file)
-            declare_edge(c, routine, *variable, declared->edge);
+        const Meant meant = meaning_of(c, routine, block, *declared);
+        Variable& variable = make_variable(c, routine, block, meant);
+        give_name(c, routine, variable, meant);
+        check_instances(c, routine, variable, meant);
+        give_place(c, routine, variable, meant);
+        complete(c, routine, variable, meant);
     }
 }
 

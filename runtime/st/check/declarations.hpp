@@ -11,6 +11,11 @@ void collect_names(Checking& c);
 
 /// A variable in `to`, with its unit, which is checked.
 Variable* add(Checking& c, std::deque<Variable>& to, const Declaration& declared, const Type* type);
+
+/// What a block declares, in the order in which it is checked: each constant of B&R behind those
+/// that it is made of.
+std::vector<Declaration*> in_order(const DeclarationBlock& block);
+
 /// A constant scalar takes no memory, unless others see it at its address.
 void make_constant(Checking& c, Variable& variable);
 

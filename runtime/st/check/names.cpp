@@ -233,8 +233,8 @@ const Type* enumeration_of(Checking& c, const Expression& member) {
     return type;
 }
 
-const Type* become_value(Checking& c, Expression*& e, const Type& type, std::ptrdiff_t index) {
-    return become(c, e, type, {.integer = type.numbers[static_cast<std::size_t>(index)]});
+const Type* become_value(Checking& c, Expression*& e, const Type& type, std::size_t index) {
+    return become(c, e, type, {.integer = type.numbers[index]});
 }
 
 const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, const Token& name) {
@@ -243,8 +243,9 @@ const Type* check_value(Checking& c, Expression*& e, const Type& enumeration, co
         return c.fail(code::not_declared, name.place,
                       fmt::format("{} has no value '{}'", enumeration.name, name.text),
                       suggest(name.text, enumeration.values));
-    c.note(name.place, enumeration);
-    return become_value(c, e, enumeration, found - enumeration.values.data());
+    const auto index = static_cast<std::size_t>(found - enumeration.values.data());
+    c.note_value(name.place, enumeration, index);
+    return become_value(c, e, enumeration, index);
 }
 
 namespace {
@@ -324,7 +325,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         if (value && !is_variable_for(c, token))
             return expected->is_qualified_only && e->place.dialect().is_loose
                        ? refuse_alone(c, *e, *expected)
-                       : become_value(c, e, *expected, value - expected->values.data());
+                       : check_value(c, e, *expected, token);
     }
     Routine* getter = find_accessor(c, *e, Accessor::get);
     Variable* variable = is_text || getter ? nullptr : find_variable(c, token);
@@ -356,7 +357,8 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
             return c.fail(code::not_declared, e->place,
                           fmt::format("'{}' is a value of several enumerations", token.text),
                           fmt::format("write {}#{}", value->type->name, token.text));
-        return become_value(c, e, *value->type, static_cast<std::ptrdiff_t>(value->index));
+        c.note_value(token.place, *value->type, value->index);
+        return become_value(c, e, *value->type, value->index);
     }
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));

@@ -139,12 +139,16 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }
 
+Expression* made_of_value(Checking& c, const Expression& e, const Type& type, std::size_t i) {
+    c.note_value(e.token.place, type, i);
+    return make_constant(c, e, any_integer_type, {.integer = type.numbers[i]});
+}
+
 /// `LONG := SHORT + 1` with the numbers of the values before it.
 Expression* with_values_before(Checking& c, Expression* e, const Type& type) {
     if (!e) return e;
     for (std::size_t i = 0; e->kind == E::name && i < type.values.size(); ++i)
-        if (same_name(type.values[i], e->token.text))
-            return make_constant(c, *e, any_integer_type, {.integer = type.numbers[i]});
+        if (same_name(type.values[i], e->token.text)) return made_of_value(c, *e, type, i);
     Expression* made = make_copy(c, *e);
     for (Expression*& operand : made->operands) operand = with_values_before(c, operand, type);
     return made;
@@ -191,7 +195,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
         if (!is_new_name(c, value.name, names)) continue;
         type.counted &= number == static_cast<std::int64_t>(type.values.size());
         type.values.emplace_back(value.name.text);
+        type.places.push_back(value.name.place);
         type.numbers.push_back(number++);
+        c.note_value(value.name.place, type, type.values.size() - 1);
     }
     const bool is_from_zero = text.place.dialect().enumerations_begin_at_zero && type.name_of(0);
     if (!is_from_zero && !type.numbers.empty()) type.initial.integer = type.numbers.front();

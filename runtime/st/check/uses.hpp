@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "runtime/st/types/types.hpp"
 
 namespace lineshaft::st {
@@ -12,6 +14,7 @@ struct NameUse {
     const Variable* variable = nullptr;
     const Routine* routine = nullptr;
     const Type* type = nullptr;
+    std::optional<std::size_t> value = {};  ///< which of the type's, if that is meant
 };
 
 }  // namespace lineshaft::st

@@ -208,6 +208,7 @@ class FieldWriter {
                            : type.is_unsigned_64()          ? lineshaft::Type::unsigned_integer
                                                             : lineshaft::Type::integer;
         Field& field = add(name, direction, value, offset);
+        field.takes_not_finite = type.is_real();
         field.unit = type.is_time() ? std::string_view("ns") : std::string_view(variable.unit);
         if (!variable.doc.empty())
             field.doc = made_.names.emplace_back(text_of_comments(variable.doc));
@@ -234,16 +235,15 @@ class FieldWriter {
     ValueNames names_of(const Type& type) const {
         const auto& names = made_.values.emplace_back(type.values.begin(), type.values.end());
         if (!type.has_numbers) return std::span(names);
-        const ValueNames made(type.name, names, type.numbers);
-        if (!type.is_unchecked) return made;
-        const Type& base = type.base->plain();
-        return made.with_others(clamped(smallest(base)), clamped(largest(base)));
-    }
-
-    static std::int64_t clamped(Wide number) {
         using Limits = std::numeric_limits<std::int64_t>;
-        return static_cast<std::int64_t>(
-            std::clamp(number, Wide{Limits::min()}, Wide{Limits::max()}));
+        const Type& base = type.base->plain();
+        const bool has_sign = largest(base) <= Limits::max();
+        ValueNames made(type.name, names, type.numbers);
+        if (!has_sign) made = made.without_sign();
+        if (!type.is_unchecked) return made;
+        return made.with_others(
+            has_sign ? static_cast<std::int64_t>(smallest(base)) : Limits::min(),
+            has_sign ? static_cast<std::int64_t>(largest(base)) : Limits::max());
     }
 
     Library::Made& made_;

@@ -37,8 +37,7 @@ bool take_in(std::byte* first, std::size_t count, const Scan& now, const Context
     const auto& kind = *static_cast<const ImageKind*>(context.kind);
     for (std::size_t i = 0; i < kind.places.size(); ++i) {
         const std::byte* place = shown(kind, first, i);
-        const bool is_taken = kind.places[i].is_taken && has_changed(place);
-        if (is_taken)
+        if (has_changed(place))
             store_packed(first, kind.places[i].bit, kind.places[i].format,
                          read<std::uint64_t>(place));
     }
@@ -120,7 +119,7 @@ class Fields {
         if (address.bits > 1) format = packed_format(type, dialect).value();
         const bool is_set =
             address.area == ImageAddress::Area::output && is_set_by_sources(image_, address);
-        kind.places.push_back({image_.bit_of(address), format, !is_set});
+        kind.places.push_back({image_.bit_of(address), format});
         Field field = field_of(type, address);
         field.name = made_.names.emplace_back(name);
         field.offset = kind.bytes + 16 * (kind.places.size() - 1);

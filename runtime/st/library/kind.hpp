@@ -44,7 +44,6 @@ struct ImageKind {
     struct Place {
         std::uint64_t bit = 0;  ///< of the image
         PackedFormat format = {};
-        bool is_taken = true;  ///< what others write there goes into the bytes
     };
     std::vector<Place> places;  ///< of each field
     std::vector<Field> fields;

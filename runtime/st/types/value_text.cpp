@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/units.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/elementary.hpp"
@@ -19,11 +20,10 @@ using Kind = Type::Kind;
 
 /// The shortest number that reads back as the same value of its width.
 std::string real_text(double value, bool is_long) {
-    if (std::isnan(value)) return "NaN";
-    std::string text =
+    if (!std::isfinite(value)) return format_number(value);
+    const std::string text =
         is_long ? fmt::format("{}", value) : fmt::format("{}", static_cast<float>(value));
-    const bool plain = std::isfinite(value) && text.find_first_of(".e") == std::string::npos;
-    return plain ? text + ".0" : text;
+    return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;

@@ -1,6 +1,7 @@
 #include "runtime/csv/csv_reader.hpp"
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -81,6 +82,33 @@ TEST_CASE("an empty cell is a missing value") {
     CHECK(std::isnan(y[1]));
     CHECK(read.table->find("x")->is_missing(0));
     CHECK(std::isnan(values(read_text("x\n\n1\n"), "x")[0]));
+}
+
+TEST_CASE("a real that is not finite is read as what it is, a time is not") {
+    const Read read = read_text("x,y\nINF,1\n-INF,1\nNaN,1\n,1\ninf,1\n-nan,1\n\"Infinity\",1\n");
+    const Values x = values(read, "x");
+    const double infinite = std::numeric_limits<double>::infinity();
+    CHECK(x[0] == infinite);
+    CHECK(x[1] == -infinite);
+    CHECK(x[4] == infinite);
+    CHECK(x[6] == infinite);
+    const CsvColumn& column = *read.table->find("x");
+    for (const std::size_t row : {2u, 3u, 5u}) {
+        CHECK(std::isnan(x[row]));
+        CHECK(column.is_missing(row) == (row == 3));
+    }
+    CHECK(read_text("time,x\nINF,1\n")
+              .said.starts_with("t.csv:2:1: error[L0705]: 'INF' in column 'time' is not a time\n"));
+}
+
+TEST_CASE("an enumeration without a sign has numbers beyond 2^63") {
+    const Read read = read_text("time,m\n0,18446744073709551615\n1,Far\n", {}, R"({"tableSchema":
+        {"columns": [{"titles": "time", "datatype": "double"},
+                     {"titles": "m", "datatype": "integer", "values": ["Near", "Far"],
+                      "lineshaft:numbers": [0, 18446744073709551614]}]}})");
+    REQUIRE(read.table);
+    CHECK(read.table->find("m")->integer(0) == Wide{18446744073709551615u});
+    CHECK(read.table->find("m")->integer(1) == Wide{18446744073709551614u});
 }
 
 TEST_CASE("cells of a column with names may be one of them, or its number") {
@@ -188,7 +216,7 @@ TEST_CASE("mistakes of a CSV file are told with their places") {
           "t.csv:3:1: error[L0706]: the row has 1 cell instead of 2: the file is cut\n"
           "   3 | 1\n"
           "     | ^\n");
-    for (const char* word : {"nan", "inf", "-inf", "0x10", "1 2", "1e999", "true", "+-1", "1,5;"})
+    for (const char* word : {"nan(", "infinite", "0x10", "1 2", "1e999", "true", "+-1", "1,5;"})
         CHECK(read_text(fmt::format("x,y\n1,{}\n", word)).said.find("error[L070") !=
               std::string::npos);
     CHECK(read_text("x,x\n1,2\n")

@@ -49,6 +49,11 @@ TEST_CASE("an enumeration's numbers need not be 0, 1, 2") {
     CHECK(names.with_others(-128, 127).takes(1));
     CHECK_FALSE(names.with_others(-128, 127).takes(200));
     CHECK(names.fits(names.with_others(-128, 127)));
+    CHECK_FALSE(names.fits(names.without_sign()));
+    CHECK(names.without_sign().whole(-1) == Wide{18446744073709551615u});
+    CHECK(names.without_sign().stored(Wide{18446744073709551615u}) == -1);
+    CHECK_FALSE(names.without_sign().stored(-1));
+    CHECK(names.whole(-1) == -1);
     CHECK_FALSE(names.with_others(-128, 127).fits(names));
     CHECK_FALSE(names.fits(ValueNames(list)));
 }

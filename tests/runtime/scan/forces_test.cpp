@@ -49,6 +49,15 @@ TEST_CASE("a forced output keeps its value, and the block's own is back after it
     CHECK(watch.changes == Changes{{0, 1}, {2, 2}, {3, 100}, {7, 4}, {8, 5}, {10, 6}});
 }
 
+TEST_CASE("a forced variable of a program stays behind the force until it is written", "[force]") {
+    Bench bench({{.name = "a", .every = 2}});
+    bench.machine.forces = {force_output(bench, "a", 3, 7, 100)};
+    bench.machine.forces[0].stays = true;
+    Watch watch(bench.output("a"));
+    bench.run({&watch});
+    CHECK(watch.changes == Changes{{0, 1}, {2, 2}, {3, 100}, {8, 5}, {10, 6}});
+}
+
 TEST_CASE("a forced output is forced where others see it, while a scan takes time", "[force]") {
     Bench bench({{.name = "a", .every = 4, .cost = 1}});
     bench.machine.forces = {force_output(bench, "a", 3, 7, 100)};

@@ -42,8 +42,9 @@ TEST_CASE("reals are written short, and as users write them", "[trace][number]")
     CHECK(text(write_real, 1e16) == "1e+16");
     CHECK(text(write_real, -1.7976931348623157e308) == "-1.7976931348623157e+308");
     CHECK(text(write_real, 5e-324) == "5e-324");
-    CHECK(text(write_real, std::numeric_limits<double>::infinity()).empty());
-    CHECK(text(write_real, std::nan("")).empty());
+    CHECK(text(write_real, std::numeric_limits<double>::infinity()) == "INF");
+    CHECK(text(write_real, -std::numeric_limits<double>::infinity()) == "-INF");
+    CHECK(text(write_real, -std::nan("")) == "NaN");
 }
 
 TEST_CASE("any real reads back as the same bits, in at most 17 digits", "[trace][number]") {

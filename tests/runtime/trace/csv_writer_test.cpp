@@ -88,9 +88,9 @@ TEST_CASE("a trace is a CSV file of one header row and a row a scan") {
           "0.0125,5,0,-0,0,4611686018427387904\n");
 }
 
-TEST_CASE("what is no number is an empty cell") {
+TEST_CASE("what is not finite is written as in CSVW") {
     CHECK(cells({not_a_number, infinite, -infinite, 1}) ==
-          std::vector<std::string>{"", "", "", "1"});
+          std::vector<std::string>{"NaN", "INF", "-INF", "1"});
 }
 
 TEST_CASE("the sidecar tells columns, units, types, program and version") {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -10,6 +9,7 @@
 #include "runtime/st/functions/standard.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "tools/lineshaft/lsp/meanings.hpp"
+#include "tools/lineshaft/lsp/offer.hpp"
 #include "tools/lineshaft/lsp/requests.hpp"
 #include "tools/lineshaft/lsp/yaml_places.hpp"
 
@@ -17,39 +17,10 @@ namespace lineshaft::lsp {
 
 namespace {
 
-enum class Kind : std::uint8_t {
-    method = 2,
-    function = 3,
-    field = 5,
-    variable = 6,
-    class_ = 7,
-    enum_ = 13,
-    keyword = 14
-};
-
-/// What can be written at a place, each name once.
-class Offer {
-  public:
-    void add(std::string_view label, Kind kind, const std::string& detail = {},
-             const std::string& doc = {}, const std::string& insert = {}) {
-        if (!seen_.insert(lower(label)).second) return;
-        Json item{{"label", label}, {"kind", static_cast<int>(kind)}};
-        if (!detail.empty()) item["detail"] = detail;
-        if (!doc.empty()) item["documentation"] = doc;
-        if (!insert.empty()) item["insertText"] = insert;
-        list_.push_back(std::move(item));
-    }
-    void add(const st::Variable& v, Kind kind, const std::string& behind = {}) {
-        add(v.text, kind, v.type ? st::describe(*v.type) : "",
-            v.doc.empty() ? "" : std::string(v.doc),
-            behind.empty() ? behind : std::string(v.text) + behind);
-    }
-    Json take() { return std::move(list_); }
-
-  private:
-    std::set<std::string> seen_;
-    Json list_ = Json::array();
-};
+void add_variable(Offer& to, const st::Variable& v, Offered kind, const std::string& behind = {}) {
+    to.add(v.text, kind, v.type ? st::describe(*v.type) : "", v.doc,
+           behind.empty() ? behind : std::string(v.text) + behind);
+}
 
 /// Names with dots, indices left out, that end before a byte: `a.b[i].c` as a, b, c.
 std::vector<std::string> chain_before(const std::string& text, std::size_t end) {
@@ -161,43 +132,43 @@ void Completion::add_members(const st::Type& type, Offer& to) const {
     if (type.routine) {
         for (const st::Variable* v : st::all_variables(*type.routine))
             if (is_own || v->section == st::Section::input || v->section == st::Section::output)
-                to.add(*v, Kind::field);
+                add_variable(to, *v, Offered::field);
         for (const auto* known : {&type.routine->methods, &type.routine->getters})
             for (const auto& [name, method] : *known)
-                to.add(name, Kind::method, signature_of(*method));
+                to.add(name, Offered::method, signature_of(*method));
     }
     for (const st::Variable* member : type.members)
         if (type.kind != st::Type::Kind::standard || member->section != st::Section::local)
-            to.add(*member, Kind::field);
+            add_variable(to, *member, Offered::field);
     if (type.kind == st::Type::Kind::handle)
         for (const lineshaft::Field& field : type.standard->fields)
-            to.add(field.name, Kind::field, std::string(field.unit), std::string(field.doc));
-    for (const std::string& value : type.values) to.add(value, Kind::enum_, type.name);
+            to.add(field.name, Offered::field, std::string(field.unit), std::string(field.doc));
+    for (const std::string& value : type.values) to.add(value, Offered::enum_, type.name);
 }
 
 void Completion::add_names(Offer& to) const {
     for (const st::Routine* r = routine; r; r = r->owner) {
-        for (const st::Variable* v : st::all_variables(*r)) to.add(*v, Kind::variable);
+        for (const st::Variable* v : st::all_variables(*r)) add_variable(to, *v, Offered::variable);
         for (const auto& [name, method] : r->methods)
-            to.add(name, Kind::method, signature_of(*method));
+            to.add(name, Offered::method, signature_of(*method));
     }
     for (const st::NameUse& use : meaning.uses)
         if (use.variable && use.variable->section == st::Section::global)
-            to.add(*use.variable, Kind::variable);
+            add_variable(to, *use.variable, Offered::variable);
     for (const st::Routine& r : meaning.compiled.checked.routines)
         if (!r.owner && r.pou->place.source && r.pou->place.source->is_users())
-            to.add(r.name, r.is_function() ? Kind::function : Kind::class_, signature_of(r));
+            to.add(r.name, r.is_function() ? Offered::function : Offered::class_, signature_of(r));
     for (const st::Type& type : meaning.compiled.checked.types)
         if (!type.is_unnamed && (type.kind == st::Type::Kind::structure || type.has_values())) {
-            to.add(type.name, Kind::class_);
-            for (const std::string& value : type.values) to.add(value, Kind::enum_, type.name);
+            to.add(type.name, Offered::class_);
+            for (const std::string& value : type.values) to.add(value, Offered::enum_, type.name);
         }
     for (const st::StandardFunction* f : st::standard_functions())
-        to.add(f->name, Kind::function, std::string(f->signature), std::string(f->doc));
+        to.add(f->name, Offered::function, std::string(f->signature), std::string(f->doc));
     for (const BlockType& kind : standard_blocks().types())
-        to.add(kind.name, Kind::class_, "", std::string(kind.doc));
+        to.add(kind.name, Offered::class_, "", std::string(kind.doc));
     for (int word = 0; word < static_cast<int>(st::Word::end_of_file); ++word)
-        to.add(st::shown(static_cast<st::Word>(word)), Kind::keyword);
+        to.add(st::shown(static_cast<st::Word>(word)), Offered::keyword);
 }
 
 /// A call whose brackets are open at a byte.
@@ -263,7 +234,7 @@ bool is_in_comment_or_text(const Asked& where) {
 }
 
 Json complete_structured_text(Session& session, const Asked& where) {
-    Offer offer;
+    Offer offer(false);
     if (is_in_comment_or_text(where)) return offer.take();
     const auto meaning = whole_meaning_of(session, session.project.roots_of(where.path).front());
     const Completion at{*meaning, meaning->routine_at(where)};
@@ -280,10 +251,12 @@ Json complete_structured_text(Session& session, const Asked& where) {
         const auto chain = chain_before(where.text, without_blanks(where.text, call->open));
         if (const st::Routine* called = at.routine_of(chain))
             for (const st::Variable* v : parameters_of(*called))
-                offer.add(*v, Kind::field, v->section == st::Section::output ? " => " : " := ");
+                add_variable(offer, *v, Offered::field,
+                             v->section == st::Section::output ? " => " : " := ");
         else if (const st::Type* type = at.type_of(chain))
             for (const st::Variable* v : type->members)
-                offer.add(*v, Kind::field, v->section == st::Section::output ? " => " : " := ");
+                add_variable(offer, *v, Offered::field,
+                             v->section == st::Section::output ? " => " : " := ");
     }
     at.add_names(offer);
     return offer.take();
@@ -324,6 +297,7 @@ std::optional<Signature> signature_at(const Completion& at, const std::vector<st
 Json completion(Session& session, const Json& params) {
     const auto where = asked(session, params);
     if (!where) return nullptr;
+    if (is_code(where->path) && !is_structured_text(where->path)) return nullptr;
     return {{"isIncomplete", false},
             {"items", is_structured_text(where->path) ? complete_structured_text(session, *where)
                                                       : complete_yaml(session, *where)}};

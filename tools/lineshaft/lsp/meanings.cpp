@@ -9,6 +9,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/fields.hpp"
+#include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
@@ -134,9 +135,15 @@ std::string about(const st::NameUse& use) {
         return text;
     }
     const st::Type& type = *use.type;
+    const auto value = [&type](std::size_t i) {
+        const auto bits = static_cast<std::uint64_t>(type.numbers[i]);
+        return fmt::format(
+            "{} = {}", type.values[i],
+            st::to_string(st::whole_in(type.base ? type.base->plain() : type, bits)));
+    };
     std::string text = fmt::format("```st\n{}\n```", st::describe(type));
-    for (std::size_t i = 0; i < type.values.size(); ++i)
-        text += fmt::format("\n- {} = {}", type.values[i], type.numbers[i]);
+    if (use.value) text = fmt::format("```st\n{}.{}\n```\n", type.name, value(*use.value)) + text;
+    for (std::size_t i = 0; i < type.values.size(); ++i) text += "\n- " + value(i);
     for (const st::Variable* member : type.members)
         text += fmt::format("\n- {} : {}", member->text,
                             member->type ? st::describe(*member->type) : "?");
@@ -167,12 +174,32 @@ std::vector<const st::Variable*> parameters_of(const st::Routine& routine) {
     return found;
 }
 
-const st::NameUse* Meaning::find(const std::string& path, std::size_t offset) const {
+std::optional<std::size_t> offset_in(const SourceFile& source, const Asked& where) {
+    const auto& parts = source.excerpts;
+    if (parts.empty()) return where.offset;
+    const Text text(where.text);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (!parts[i].is_copied) continue;
+        const std::size_t end = i + 1 < parts.size() ? parts[i + 1].begin : source.text.size();
+        const std::size_t first = text.bytes_of(parts[i].place).first;
+        if (where.offset >= first && where.offset - first <= end - parts[i].begin)
+            return parts[i].begin + where.offset - first;
+    }
+    return {};
+}
+
+const st::NameUse* Meaning::find(const Asked& where) const {
     const st::NameUse* found = nullptr;
-    for (const st::NameUse& use : uses)
-        if (use.at.begin <= offset && offset <= use.at.end && is_in(use.at, path) &&
+    const st::Source* source = nullptr;
+    std::optional<std::size_t> offset;
+    for (const st::NameUse& use : uses) {
+        if (!is_in(use.at, where.path)) continue;
+        if (use.at.source != source) offset = offset_in(*use.at.source->file, where);
+        source = use.at.source;
+        if (offset && use.at.begin <= *offset && *offset <= use.at.end &&
             (!found || use.at.end - use.at.begin < found->at.end - found->at.begin))
             found = &use;
+    }
     return found;
 }
 

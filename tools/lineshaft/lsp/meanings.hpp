@@ -16,7 +16,7 @@ struct Meaning {
     std::vector<st::NameUse> uses = {};
 
     /// Of the name at a byte of a file; null: it is none.
-    const st::NameUse* find(const std::string& path, std::size_t offset) const;
+    const st::NameUse* find(const Asked& where) const;
     /// The block, function, method or program that the byte stands in; null: none.
     const st::Routine* routine_at(const Asked& where) const;
     const st::Routine* find_block(std::string_view name) const;
@@ -28,6 +28,9 @@ std::shared_ptr<const Meaning> meaning_of(Session& session, const std::string& r
 std::shared_ptr<const Meaning> whole_meaning_of(Session& session, const std::string& root);
 
 bool is_in(const st::Place& place, const std::string& path);
+
+/// Where a byte of a file stands in a text that was put together of it; empty: it is not in that.
+std::optional<std::size_t> offset_in(const SourceFile& source, const Asked& where);
 
 /// A declaration as the editor shows it: `speed : REAL (VAR_INPUT)`, unit, value, what comments
 /// say.

@@ -37,7 +37,7 @@ struct Found {
 Found find(Session& session, const Asked& where) {
     for (const std::string& root : session.project.roots_of(where.path)) {
         Found found{meaning_of(session, root), nullptr};
-        found.use = found.meaning->find(where.path, where.offset);
+        found.use = found.meaning->find(where);
         if (found.use) return found;
     }
     return {};
@@ -62,7 +62,7 @@ Found find_in_sources(Session& session, const Asked& where, const YamlName& name
 }
 
 Found find_anywhere(Session& session, const Asked& where) {
-    if (is_structured_text(where.path)) return find(session, where);
+    if (is_code(where.path)) return find(session, where);
     const auto name = name_at(where.text, where.offset);
     return name ? find_in_sources(session, where, *name) : Found();
 }
@@ -136,8 +136,7 @@ Json hover(Session& session, const Json& params) {
     const Found found = find_anywhere(session, *where);
     std::string text = found.use ? about(*found.use) : std::string();
     if (text.empty())
-        text =
-            is_structured_text(where->path) ? about_function(*where) : about_yaml(session, *where);
+        text = is_code(where->path) ? about_function(*where) : about_yaml(session, *where);
     return text.empty() ? Json() : markdown(text);
 }
 
@@ -149,7 +148,7 @@ Json definition(Session& session, const Json& params) {
         const bool is_own = declared.source && declared.source->is_users();
         return is_own ? location(session, mark_of_name(declared)) : Json();
     }
-    if (is_structured_text(where->path)) return nullptr;
+    if (is_code(where->path)) return nullptr;
     const auto mark = declared_in_yaml(session, *where);
     return mark ? location(session, *mark) : Json();
 }
@@ -174,8 +173,7 @@ Json prepare_rename(Session& session, const Json& params) {
     const auto where = asked(session, params);
     const Found found = where ? find_anywhere(session, *where) : Found();
     if (!can_be_changed(found)) return nullptr;
-    if (is_structured_text(where->path))
-        return range_of(mark_of_name(found.use->at), session.encoding);
+    if (is_code(where->path)) return range_of(mark_of_name(found.use->at), session.encoding);
     const auto name = name_at(where->text, where->offset);
     return Text(where->text).range(name->begin, name->end, session.encoding);
 }

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "runtime/source/encoding.hpp"
 #include "runtime/st/library/test_sources.hpp"
 #include "runtime/st/syntax/parser.hpp"
@@ -28,6 +30,13 @@ enum Symbol {
 struct Outline {
     const Session& session;
     const Text& text;
+    std::shared_ptr<const SourceFile> source = {};  ///< of what is shown, where it is not the text
+
+    /// A byte of the source in the text.
+    std::size_t in_text(std::size_t offset) const {
+        if (!source || source->excerpts.empty()) return offset;
+        return text.bytes_of(mark_of(source, offset, offset)).first;
+    }
 
     Json symbol(const std::string& name, Symbol kind, std::size_t begin, std::size_t end,
                 std::size_t name_begin, std::size_t name_end) const {
@@ -38,12 +47,15 @@ struct Outline {
                 {"children", Json::array()}};
     }
     Json symbol(const st::Token& name, Symbol kind, std::size_t end) const {
-        const st::Place& at = name.place;
-        return symbol(std::string(name.text), kind, at.begin, std::max<std::size_t>(end, at.end),
-                      at.begin, at.end);
+        const std::size_t begin = in_text(name.place.begin);
+        const std::size_t name_end = begin + (name.place.end - name.place.begin);
+        return symbol(std::string(name.text), kind, begin, std::max(end, name_end), begin,
+                      name_end);
     }
     Json of_pou(const st::Pou& pou, std::size_t end) const;
     Json of_yaml(const Node& key, const Node& value, int depth) const;
+    /// What the source declares.
+    void add_to(Json& symbols) const;
 };
 
 Json Outline::of_pou(const st::Pou& pou, std::size_t end) const {
@@ -56,9 +68,26 @@ Json Outline::of_pou(const st::Pou& pou, std::size_t end) const {
     for (std::size_t i = 0; i < pou.methods.size(); ++i) {
         const bool is_last = i + 1 == pou.methods.size();
         made["children"].push_back(
-            of_pou(*pou.methods[i], is_last ? end : pou.methods[i + 1]->place.begin));
+            of_pou(*pou.methods[i], is_last ? end : in_text(pou.methods[i + 1]->place.begin)));
     }
     return made;
+}
+
+void Outline::add_to(Json& symbols) const {
+    Diagnostics untold;
+    st::Tree tree;
+    st::parse(st::read_tokens(source, untold, st::SourceKind::tests), tree, untold);
+    for (const st::TypeDeclaration& type : tree.types)
+        symbols.push_back(symbol(type.name, struct_, 0));
+    for (const st::DeclarationBlock& block : tree.globals)
+        for (const st::Declaration* declared : block.declarations)
+            symbols.push_back(symbol(declared->name, variable, 0));
+    for (std::size_t i = 0; i < tree.units.size(); ++i) {
+        const bool is_last = i + 1 == tree.units.size();
+        symbols.push_back(of_pou(*tree.units[i], is_last
+                                                     ? text.text().size()
+                                                     : in_text(tree.units[i + 1]->place.begin)));
+    }
 }
 
 Json Outline::of_yaml(const Node& key, const Node& value, int depth) const {
@@ -90,40 +119,12 @@ Json fold(const Session& session, const Text& text, std::size_t begin, std::size
 }
 
 bool opens(st::Word word) {
-    const std::string_view name = st::shown(word);
-    for (const std::string_view of : {"IF",
-                                      "CASE",
-                                      "FOR",
-                                      "WHILE",
-                                      "REPEAT",
-                                      "STRUCT",
-                                      "UNION",
-                                      "TYPE",
-                                      "FUNCTION",
-                                      "FUNCTION_BLOCK",
-                                      "PROGRAM",
-                                      "METHOD",
-                                      "PROPERTY",
-                                      "CLASS",
-                                      "INTERFACE",
-                                      "ACTION",
-                                      "TEST",
-                                      "SETUP",
-                                      "TEARDOWN",
-                                      "NAMESPACE",
-                                      "REGION",
-                                      "VAR",
-                                      "VAR_INPUT",
-                                      "VAR_OUTPUT",
-                                      "VAR_IN_OUT",
-                                      "VAR_TEMP",
-                                      "VAR_GLOBAL",
-                                      "VAR_EXTERNAL",
-                                      "VAR_STAT",
-                                      "DATA_BLOCK",
-                                      "ORGANIZATION_BLOCK"})
-        if (name == of) return true;
-    return false;
+    constexpr std::string_view words =
+        " IF CASE FOR WHILE REPEAT STRUCT UNION TYPE FUNCTION FUNCTION_BLOCK PROGRAM "
+        "METHOD PROPERTY CLASS INTERFACE ACTION TEST SETUP TEARDOWN NAMESPACE REGION "
+        "VAR VAR_INPUT VAR_OUTPUT VAR_IN_OUT VAR_TEMP VAR_GLOBAL VAR_EXTERNAL VAR_STAT "
+        "DATA_BLOCK ORGANIZATION_BLOCK ";
+    return words.find(fmt::format(" {} ", st::shown(word))) != words.npos;
 }
 
 /// `END_IF` ends the last IF that is open, and what is open within it.
@@ -210,26 +211,23 @@ Json document_symbols(Session& session, const Json& params) {
     const auto where = asked(session, params);
     if (!where) return nullptr;
     const Text text(where->text);
-    const Outline outline{session, text};
+    Outline outline{session, text};
     Json symbols = Json::array();
     Diagnostics untold;
-    if (!is_structured_text(where->path)) {
+    if (!is_code(where->path)) {
         if (const auto root = parse_yaml(source_of(*where), untold))
             for (const auto& [key, value] : root->entries)
                 symbols.push_back(outline.of_yaml(key, value, 3));
         return symbols;
     }
-    st::Tree tree;
-    st::parse(st::read_tokens(source_of(*where), untold, st::SourceKind::tests), tree, untold);
-    for (const st::TypeDeclaration& type : tree.types)
-        symbols.push_back(outline.symbol(type.name, struct_, 0));
-    for (const st::DeclarationBlock& block : tree.globals)
-        for (const st::Declaration* declared : block.declarations)
-            symbols.push_back(outline.symbol(declared->name, variable, 0));
-    for (std::size_t i = 0; i < tree.units.size(); ++i) {
-        const bool is_last = i + 1 == tree.units.size();
-        const std::size_t end = is_last ? where->text.size() : tree.units[i + 1]->place.begin;
-        symbols.push_back(outline.of_pou(*tree.units[i], end));
+    if (is_structured_text(where->path)) {
+        outline.source = source_of(*where);
+        outline.add_to(symbols);
+    } else {
+        for (const auto& source : session.project.sources_of(where->path)) {
+            outline.source = source;
+            outline.add_to(symbols);
+        }
     }
     return symbols;
 }

@@ -4,11 +4,13 @@
 #include <filesystem>
 
 #include "blocks/catalog.hpp"
+#include "runtime/program/whole_project.hpp"
 #include "runtime/projects/instruction_lists.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/study/study_reader.hpp"
+#include "tools/lineshaft/check_project.hpp"
 #include "tools/lineshaft/lsp/yaml_places.hpp"
 #include "tools/lineshaft/test_files.hpp"
 
@@ -27,6 +29,19 @@ std::string normal(const std::string& path) {
     return fs::path(path).lexically_normal().string();
 }
 
+bool has_ending(const std::string& path, std::initializer_list<std::string_view> endings) {
+    return std::ranges::find(endings, lower(fs::path(path).extension().string())) != endings.end();
+}
+
+/// A POU, a type or a list of globals of TwinCAT.
+bool is_object(const std::string& path) {
+    return has_ending(path, {".tcpou", ".tcdut", ".tcgvl"});
+}
+
+bool is_project_file(const std::string& path) {
+    return has_ending(path, {".plcproj"});
+}
+
 /// Editors have other people's YAML open, too.
 bool is_ours(const SourceFile& file) {
     return file.text.find("lineshaft:") != file.text.npos ||
@@ -43,6 +58,10 @@ bool has_word(std::string_view text, std::string_view word) {
 
 }  // namespace
 
+bool is_code(const std::string& path) {
+    return is_structured_text(path) || is_object(path) || is_project_file(path);
+}
+
 bool Project::lies_in_folders(const std::string& path) const {
     return std::ranges::any_of(folders_, [&](const auto& f) { return is_below(path, f); });
 }
@@ -56,6 +75,7 @@ void Project::read_folders() {
     is_read_ = true;
     yaml_files_.clear();
     sources_.clear();
+    projects_.clear();
     programs_.clear();
     std::error_code error;
     for (const std::string& folder : folders_) {
@@ -68,7 +88,10 @@ void Project::read_folders() {
             }
             const std::string path = entry->path().lexically_normal().string();
             if (entry->path().extension() == ".yaml") yaml_files_.insert(path);
-            if (is_structured_text(entry->path())) sources_.insert(path);
+            if (is_project_file(path))
+                projects_.insert(path);
+            else if (is_code(path))
+                sources_.insert(path);
         }
     }
     for (const std::string& path : yaml_files_) index(path);
@@ -94,19 +117,32 @@ const st::SourcePool& Project::pool() {
 }
 
 void Project::change(const std::string& path) {
-    if (is_read_ && !is_structured_text(path)) index(path);
+    if (is_read_ && !is_code(path)) index(path);
+    if (is_object(path)) has_pool_ = false;
     Diagnostics untold;
     if (!has_pool_ || !is_structured_text(path)) return;
     if (const auto file = read_source(path, untold)) pool_.replace(file);
 }
 
+std::string Project::project_of(const std::string& object) const {
+    std::string nearest;
+    for (const std::string& project : projects_) {
+        const std::string folder = fs::path(project).parent_path().string();
+        if (folder.size() >= fs::path(nearest).parent_path().string().size() &&
+            is_below(object, folder))
+            nearest = project;
+    }
+    return nearest.empty() ? object : nearest;
+}
+
 std::vector<std::string> Project::roots_of(const std::string& path) {
-    if (!is_structured_text(path)) return {path};
+    if (!is_code(path)) return {path};
     read_folders();
     std::vector<std::string> roots;
     for (const auto& [program, texts] : programs_)
         if (texts.contains(path)) roots.push_back(program);
-    return roots.empty() ? std::vector{path} : roots;
+    if (roots.empty()) roots.push_back(is_object(path) ? project_of(path) : path);
+    return roots;
 }
 
 std::vector<std::string> Project::roots_to_look_in(const std::string& path,
@@ -128,6 +164,11 @@ std::vector<std::shared_ptr<const SourceFile>> Project::sources_of(const std::st
     Diagnostics untold;
     const auto file = read_source(root, untold);
     if (!file) return {};
+    if (is_object(root) || is_project_file(root)) {
+        const auto projects = read_projects(root, {}, untold);
+        return projects.empty() ? std::vector<std::shared_ptr<const SourceFile>>()
+                                : projects.front().project.sources;
+    }
     if (!is_structured_text(root))
         return is_program(*file) ? read_program(file, {}, untold).texts
                                  : std::vector<std::shared_ptr<const SourceFile>>();
@@ -143,6 +184,10 @@ std::vector<std::shared_ptr<const SourceFile>> Project::sources_of(const std::st
 std::optional<CheckedProgram> Project::check(const std::string& root, Diagnostics& out) {
     const auto file = read_source(root, out);
     if (!file) return {};
+    if (is_object(root) || is_project_file(root)) {
+        check_project(root, {}, out);
+        return {};
+    }
     if (!is_structured_text(root)) return is_ours(*file) ? check_file(root, {}, out) : std::nullopt;
     auto together = sources_of(root);
     if (!st::is_test_file(file)) {

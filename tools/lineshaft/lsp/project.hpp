@@ -11,9 +11,13 @@
 
 namespace lineshaft::lsp {
 
+/// Structured Text, in a file of its own or in TwinCAT's XML, or a project of such.
+bool is_code(const std::string& path);
+
 /// The folders that the editor has open, and what in them is checked together: a file of YAML with
-/// all that it names, a source of Structured Text that no program names with those that declare
-/// what it names. A file outside of them is checked as if the command line named it alone.
+/// all that it names, an object of TwinCAT with its project, a source of Structured Text that no
+/// program names with those that declare what it names. A file outside of them is checked as if the
+/// command line named it alone.
 class Project {
   public:
     void set_folders(std::vector<std::string> folders) { folders_ = std::move(folders); }
@@ -41,10 +45,12 @@ class Project {
     void index(const std::string& program);
     /// Reads the folder's sources if it must.
     const st::SourcePool& pool();
+    /// The `.plcproj` in a folder above, else the object alone.
+    std::string project_of(const std::string& object) const;
 
     std::vector<std::string> folders_;
     bool is_read_ = false, has_pool_ = false;
-    std::set<std::string> yaml_files_, sources_;
+    std::set<std::string> yaml_files_, sources_, projects_;
     std::map<std::string, std::set<std::string>> programs_;  ///< and paths of their sources
     st::SourcePool pool_;
 };

@@ -94,8 +94,27 @@ class NamesInYaml {
             type = part->type;
             at = end;
             while (at < text_.size() && text_[at] == '[') at = text_.find(']', at) + 1;
-            if (at == 0 || at >= text_.size() || text_[at++] != '.') return;
+            if (at == 0 || at >= text_.size()) return;
+            if (text_[at] != '.') return add_value(at, type);
+            ++at;
         }
+    }
+    /// Behind a variable of an enumeration, `main.mode: Run` and `{always: main.mode, equals:
+    /// Run}`.
+    void add_value(std::size_t at, const st::Type* type) {
+        while (type && type->kind == st::Type::Kind::array) type = type->element;
+        const std::size_t end = std::min(text_.find_first_of("}\n", at), text_.size());
+        std::size_t colon = std::min(text_.find_first_not_of(" \"'", at), text_.size());
+        if (colon < end && text_[colon] != ':') colon = text_.find(':', text_.find("equals:", at));
+        if (!type || colon >= end) return;
+        std::size_t begin = text_.find_first_not_of(" \"'", colon + 1), last = begin;
+        for (; last < end && (is_of_name(text_[last]) || text_[last] == '.' || text_[last] == '#');
+             ++last)
+            if (!is_of_name(text_[last])) begin = last + 1;
+        for (std::size_t i = 0; i < type->places.size(); ++i)
+            if (contains(wanted_, type->places[i]) &&
+                st::same_name(type->values[i], text_.substr(begin, last - begin)))
+                add(begin, last);
     }
     /// Of an array, of its elements.
     static const st::Variable* part_of(const st::Type& whole, std::string_view name) {
@@ -259,7 +278,7 @@ References references_to(Session& session, const Meaning& of, const st::NameUse&
             }
         if (!is_there) continue;
         found.meanings.push_back(meaning);
-        if (!is_structured_text(root)) add_in_yaml(session, root, *meaning, declared, found.places);
+        if (!is_code(root)) add_in_yaml(session, root, *meaning, declared, found.places);
     }
     return found;
 }

@@ -12,6 +12,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/study/study_form.hpp"
 #include "tools/lineshaft/block_text.hpp"
+#include "tools/lineshaft/lsp/offer.hpp"
 
 namespace lineshaft::lsp {
 
@@ -234,39 +235,11 @@ std::string block_type(const std::string& text, const std::vector<std::string>& 
     return keys.size() >= 2 && keys[0] == "blocks" ? type_of(text, keys[1]) : std::string();
 }
 
-class Items {
-  public:
-    void add(std::string_view label, int kind, std::string_view detail, std::string_view doc,
-             std::string insert = {}) {
-        if (!seen_.insert(std::string(label)).second) return;
-        Json item{{"label", label}, {"kind", kind}};
-        if (!detail.empty()) item["detail"] = detail;
-        if (!doc.empty()) item["documentation"] = doc;
-        if (!insert.empty()) item["insertText"] = std::move(insert);
-        list_.push_back(std::move(item));
-    }
-    Json take() { return std::move(list_); }
-
-  private:
-    std::set<std::string> seen_;
-    Json list_ = Json::array();
-};
-
-enum ItemKind {
-    of_field = 5,
-    of_variable = 6,
-    of_class = 7,
-    of_property = 10,
-    of_unit = 11,
-    of_value = 12,
-    of_enum = 20
-};
-
 void add_keys(const Session& session, const Asked& where, const std::vector<std::string>& keys,
-              Items& to) {
+              Offer& to) {
     const auto add_form = [&](const Form& form) {
         for (const Key& key : form.keys)
-            to.add(key.name, of_property, key.required ? "must be set" : "", key.doc,
+            to.add(key.name, Offered::property, key.required ? "must be set" : "", key.doc,
                    std::string(key.name) + ": ");
     };
     if (keys.empty()) return add_form(form_of_file(where.text));
@@ -279,7 +252,7 @@ void add_keys(const Session& session, const Asked& where, const std::vector<std:
             for (const Field& field : kind->fields)
                 if (field.direction != Direction::output && field.direction != Direction::local &&
                     field.global.empty())
-                    to.add(field.name, of_field,
+                    to.add(field.name, Offered::field,
                            fmt::format("{} {}", name_of(field.direction),
                                        unit_of(session, where.path, keys[1], *kind, field)),
                            field.doc, std::string(field.name) + ": ");
@@ -287,19 +260,20 @@ void add_keys(const Session& session, const Asked& where, const std::vector<std:
 }
 
 void add_signals(const Session& session, const std::string& path, const std::string& owner,
-                 Items& to) {
+                 Offer& to) {
     const auto it = session.programs.find(path);
     if (it == session.programs.end()) return;
     const CheckedProgram& program = *it->second;
     for (const auto& [name, value] : program.program.inputs)
-        to.add(owner == "inputs" ? name.text : "inputs." + name.text, of_variable, "input", "");
+        to.add(owner == "inputs" ? name.text : "inputs." + name.text, Offered::variable, "input",
+               "");
     for (const Instance& instance : program.net.instances) {
         if (!instance.type || (!owner.empty() && owner != instance.name)) continue;
         for (const Field& field : instance.type->fields)
             if (field.direction == Direction::output || field.direction == Direction::local)
                 to.add(owner.empty() ? fmt::format("{}.{}", instance.name, field.name)
                                      : std::string(field.name),
-                       of_variable,
+                       Offered::variable,
                        fmt::format("{} {}", instance.type->name,
                                    unit_of(session, path, instance.name, *instance.type, field)),
                        field.doc);
@@ -307,24 +281,25 @@ void add_signals(const Session& session, const std::string& path, const std::str
 }
 
 /// Those of one dimension: alone, and with what stands behind the first of the factors.
-void add_units(std::string_view unit, Items& to) {
+void add_units(std::string_view unit, Offer& to) {
     const auto wanted = Unit::parse(unit);
     const std::string others(unit.substr(std::min(unit.find('/'), unit.size())));
     std::set<std::string> names;
     for (const std::string& name : unit_names()) names.insert({name, name + others});
     for (const std::string& name : names)
         if (const auto known = Unit::parse(name); known && wanted && known->same_dimension(*wanted))
-            to.add(name, of_unit, "", "");
+            to.add(name, Offered::unit, "", "");
 }
 
-void add_values(const Session& session, const Asked& where, const YamlPlace& place, Items& to) {
+void add_values(const Session& session, const Asked& where, const YamlPlace& place, Offer& to) {
     const std::string& key = place.keys.back();
     const std::size_t dot = place.written.rfind('.');
     const std::string owner = dot == std::string::npos ? "" : place.written.substr(0, dot);
     const auto known = session.programs.find(where.path);
     if (key == "type" && !place.keys.empty() && place.keys[0] == "blocks") {
         const auto add = [&](const Catalog& catalog) {
-            for (const BlockType& type : catalog.types()) to.add(type.name, of_class, "", type.doc);
+            for (const BlockType& type : catalog.types())
+                to.add(type.name, Offered::class_, "", type.doc);
         };
         add(standard_blocks());
         if (known != session.programs.end() && known->second->net.kinds)
@@ -333,27 +308,27 @@ void add_values(const Session& session, const Asked& where, const YamlPlace& pla
     }
     const Key* said = nullptr;
     for (const Shape& shape : shapes_at(where.text, place.keys, &said)) {
-        for (const std::string_view name : shape.names) to.add(name, of_value, "", "");
+        for (const std::string_view name : shape.names) to.add(name, Offered::value, "", "");
         if (shape.kind == Shape::Kind::boolean)
-            for (const char* name : {"true", "false"}) to.add(name, of_value, "", "");
+            for (const char* name : {"true", "false"}) to.add(name, Offered::value, "", "");
         if (shape.kind == Shape::Kind::time || shape.kind == Shape::Kind::share) add_units("s", to);
         if (shape.kind == Shape::Kind::signal) add_signals(session, where.path, owner, to);
         if (shape.kind == Shape::Kind::task && known != session.programs.end())
             for (const TaskPlan& task : known->second->program.tasks)
-                to.add(task.name, of_value, "task", "");
+                to.add(task.name, Offered::value, "task", "");
     }
     if (place.keys.size() != 3 || place.keys[0] != "blocks") return;
     const BlockType* kind = find_kind(session, where.path, block_type(where.text, place.keys));
     const Field* field = kind ? kind->find_settable(key) : nullptr;
     if (!field) return;
-    for (const std::string_view name : field->names) to.add(name, of_enum, "", "");
+    for (const std::string_view name : field->names) to.add(name, Offered::enum_member, "", "");
     if (!field->unit.empty())
         add_units(unit_of(session, where.path, place.keys[1], *kind, *field), to);
     if (field->direction == Direction::input) add_signals(session, where.path, owner, to);
     if (field->direction == Direction::in_out && known != session.programs.end())
         for (const Instance& instance : known->second->net.instances)
             if (instance.type && instance.type->name == field->refers)
-                to.add(instance.name, of_variable, field->refers, "");
+                to.add(instance.name, Offered::variable, field->refers, "");
 }
 
 }  // namespace
@@ -454,7 +429,7 @@ std::string about_yaml(const Session& session, const Asked& where) {
 
 Json complete_yaml(const Session& session, const Asked& where) {
     const YamlPlace place = place_at(where.text, where.offset);
-    Items items;
+    Offer items(true);
     if (place.is_value && !place.keys.empty()) add_values(session, where, place, items);
     if (!place.is_value || place.keys.empty() || place.keys.back() == "[]")
         add_keys(session, where, place.keys, items);

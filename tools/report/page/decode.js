@@ -100,6 +100,12 @@ class Samples extends Blocks {
     this.#states[index + 1] ??= { sums, outlier, missing };
   }
 
+  /** What a sample is that is drawn as missing but is not: "INF", "-INF" or "NaN". */
+  textAt(index) {
+    const found = this.packed.not_finite?.find(([first, count]) => index >= first && index < first + count);
+    return found?.[2];
+  }
+
   /** From outlier `k` on; returns the first behind the block. */
   #placeOutliers(k, first, values) {
     for (; this.places[k] < first + values.length; ++k) values[this.places[k] - first] = this.outliers[k];

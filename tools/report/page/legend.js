@@ -88,14 +88,13 @@ export class Legend {
 
   #write() {
     this.curves.forEach(({ run, signal }, index) => {
-      const valueAt = (time) => {
-        const at = time === null ? -1 : lastAtOrBefore(run.times, time);
-        return at < 0 ? NaN : signal.values.at(at);
-      };
-      const [here, a, b] = [this.view.hover, ...this.view.cursors].map(valueAt);
+      const indexAt = (time) => (time === null ? -1 : lastAtOrBefore(run.times, time));
+      const valueAt = (index) => (index < 0 ? NaN : signal.values.at(index));
+      const textAt = (index) => signal.values.textAt?.(index) ?? sample(signal, valueAt(index));
+      const [here, a, b] = [this.view.hover, ...this.view.cursors].map(indexAt);
       const differs = signal.type === "real" || signal.type === "integer";
-      const texts = [...[here, a, b].map((value) => sample(signal, value)),
-                     differs ? sample({ unit: signal.unit }, b - a) : ""];
+      const texts = [...[here, a, b].map(textAt),
+                     differs ? sample({ unit: signal.unit }, valueAt(b) - valueAt(a)) : ""];
       texts.forEach((text, k) => { this.rows[index].cells[k + 1].textContent = text; });
     });
   }
