@@ -128,6 +128,10 @@ struct Checking {
     NameMap<const Type*> catalog_types = {};
     std::map<Vendor, NameMap<const Type*>> types_of_vendors = {};  ///< that begin otherwise there
     bool has_tests = false;
+    std::optional<NameMap<const Pou*>> blocks_by_name =
+        {};  ///< of the sources, once asked for; without their namespaces
+    std::unordered_map<const Pou*, std::unordered_set<const Pou*>> parts_of_blocks =
+        {};  ///< that were asked for
     /// What __NEW makes of a type: its elements, one more of which stays as it begins, and how they
     /// are taken (blocks/libraries/__SYSTEM/memory.st).
     struct Pool {

@@ -22,6 +22,14 @@ bool is_fixed(const Expression& e) {
                    : is_constant(e);
 }
 
+/// CODESYS keeps it in 32 bits until something takes it, as what is reckoned of variables: it stays
+/// to be reckoned.
+bool is_beyond(const Expression& e, Wide value) {
+    const Type& type = *e.type;
+    return type.kind == Type::Kind::integer && e.place.dialect().reckons_in > type.bits &&
+           wrapped(type, value) != value;
+}
+
 }  // namespace
 
 Constant operate(Word op, const Constant& a, const Constant& b) {
@@ -53,6 +61,7 @@ void fold_unary(Checking& c, Expression*& e) {
     const Type& type = *e->type;
     Constant value = e->operands[0]->constant;
     if (e->op == Word::minus) {
+        if (is_beyond(*e, -value.integer)) return;
         value.real = -value.real;
         value.integer = type.is_any() ? -value.integer : wrapped(type, -value.integer);
     } else if (e->op == Word::not_) {
@@ -78,6 +87,7 @@ void fold(Checking& c, Expression*& e) {
     Constant result = operate(e->op, a, b);
     if (type.kind == Kind::time && real)
         result.integer = static_cast<Wide>(std::nearbyint(result.real));
+    if (is_beyond(*e, result.integer)) return;
     if (is_single(type)) result.real = static_cast<float>(result.real);
     if (!type.is_any() && !type.is_real()) result.integer = wrapped(type, result.integer);
     constexpr Wide most = Wide{1} << 64;
@@ -102,6 +112,10 @@ bool evaluate(Checking& c, Expression*& e) {
 
 std::optional<Wide> check_whole(Checking& c, Expression*& e, const Type& type) {
     if (!check(c, e, &type)) return {};
+    const bool is_reckoned = e->kind == E::binary || e->kind == E::unary;
+    if (is_reckoned && e->type->kind == Type::Kind::integer &&
+        e->place.dialect().reckons_in > e->type->bits)
+        convert(c, e, dint_type);
     if (!evaluate(c, e)) {
         if (e->type && (type.kind != Kind::enumeration || coerce(c, e, type)))
             c.fail(code::not_a_constant, e->place, "a constant is due here",

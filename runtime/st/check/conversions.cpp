@@ -180,6 +180,18 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
                   fmt::format("expected {}, found {}", describe(to), describe(from)), help);
 }
 
+/// What the other integer of its width holds: -1 of a USINT, in CODESYS 40000 of an INT, too, and
+/// -1 of a BYTE.
+bool wraps(const Type& to, Wide value, const Dialect& dialect) {
+    const Wide pattern = Wide{1} << to.bits;
+    const bool is_of_codesys = dialect.vendor == Vendor::codesys;
+    if (value < 0)
+        return -value <= pattern / 2 && !to.is_signed &&
+               (to.kind == Kind::integer ? dialect.is_loose : is_of_codesys);
+    return is_of_codesys && to.kind == Kind::integer && to.is_signed && value > largest(to) &&
+           value < pattern;
+}
+
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     const Wide value = e->constant.integer;
@@ -198,14 +210,16 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     if (to.is_any() || bit || no_time) return take_type(c, e, to, e->constant);
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
-    const bool is_negative = value < 0 && -value <= pattern / 2 && !to.is_signed &&
-                             to.kind == Kind::integer && e->place.dialect().is_loose;
-    if (is_negative && !to.is_subrange)
+    const bool is_wrapped =
+        from.kind == Kind::any_integer && !to.is_subrange && wraps(to, value, e->place.dialect());
+    if (is_wrapped)
         c.warn(code::conversion_may_lose, e->place,
-               fmt::format("{} has no negative numbers", to.name),
-               fmt::format("write {}, which is the same bits", to_string(value + pattern)));
+               value < 0
+                   ? fmt::format("{} has no negative numbers", to.name)
+                   : fmt::format("{} has no number above {}", to.name, to_string(largest(to))),
+               fmt::format("write {}, which is the same bits", to_string(wrapped(to, value))));
     const bool is_pattern =
-        (is_negative || (from.kind == Kind::any_bits && value < pattern)) && !to.is_subrange;
+        is_wrapped || (from.kind == Kind::any_bits && value < pattern && !to.is_subrange);
     if (!is_pattern && (value < smallest(to) || value > largest(to)))
         return c.fail(
             code::value_out_of_range, e->place,

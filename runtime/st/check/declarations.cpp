@@ -73,7 +73,7 @@ void declare_result(Checking& c, Routine& routine) {
     result.section = Section::result;
     routine.result = &result;
     routine.names.emplace(result.text, &result);
-    if (is_its_own_block(routine, type))
+    if (is_its_own_block(c, routine, type))
         give_own_instance(c, routine, result);
     else if (!routine.is_prototype())
         depend(c, type, text->place);
@@ -175,7 +175,7 @@ Meant meaning_of(Checking& c, const Routine& routine, const DeclarationBlock& bl
     if (is_value && is_unsized) type = &longer_string(c, is_wide);
     if (section == Section::in_out && is_unsized)
         type = is_wide ? &open_wide_string_type : &open_string_type;
-    const bool is_of_own = is_its_own_block(routine, type);
+    const bool is_of_own = is_its_own_block(c, routine, type);
     return {.declared = declared,
             .type = type,
             .section = section,

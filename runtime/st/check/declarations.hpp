@@ -35,9 +35,10 @@ void declare_routines(Checking& c);
 
 // own_instances.cpp
 
-/// Of what a method declares: an instance of its own block, for which an instance has no room. It
-/// stands beside all blocks, so the method does not run within itself (Fault::runs_already).
-bool is_its_own_block(const Routine& routine, const Type* type);
+/// Of what a method declares: an instance of its own block, or of one that has an instance of that
+/// again, if in a method alone, for which an instance has no room. It stands beside all blocks, so
+/// the method does not run within itself (Fault::runs_already).
+bool is_its_own_block(Checking& c, const Routine& routine, const Type* type);
 /// Such a variable becomes in each call what an instance is that nothing was done with.
 void begin_anew(Checking& c, Routine& routine, Variable& variable);
 /// Such an input refers to what it is given. Gives the copy that its name means in the method.

@@ -36,15 +36,15 @@ void check_masks(Checking& c, Expression& e, const Type* expected) {
     }
 }
 
-/// Of CODESYS an enumeration's value is its number to what works on bits, too.
-void take_bits_of_enumeration(Checking& c, Expression*& operand) {
+/// Of CODESYS an enumeration's value is its number to a sign and to what works on bits, too.
+void take_number_of_enumeration(Checking& c, Expression*& operand) {
     if (operand->place.dialect().enumerations_are_numbers && !operand->type->is_strict)
         enumeration_becomes_number(c, operand);
 }
 
 const Type* check_logic(Checking& c, Expression*& e) {
     for (Expression*& operand : e->operands)
-        if (operand) take_bits_of_enumeration(c, operand);
+        if (operand) take_number_of_enumeration(c, operand);
     const auto is_truth = [](const Expression* o) { return o->type->kind == Kind::boolean; };
     const bool of_truths = std::ranges::any_of(e->operands, is_truth);
     if (!of_truths) reinterpret(c, *e, Kind::integer);
@@ -205,6 +205,17 @@ const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) 
     return e->type;
 }
 
+/// CODESYS: a power of two REALs is one, of which either may be a literal; any other is an LREAL.
+bool are_single(const Type& a, const Type& b) {
+    const auto fits = [](const Type& t) { return is_single(t) || t.kind == Kind::any_real; };
+    return fits(a) && fits(b) && (is_single(a) || is_single(b));
+}
+
+bool may_be_single(const Type& a, const Type& b, bool is_due) {
+    const auto fits = [](const Type& t) { return t.is_any() || t.bits <= 32; };
+    return fits(a) && fits(b) && (is_due || is_single(a) || is_single(b));
+}
+
 const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
     for (Expression*& operand : e->operands) become_number(c, operand);
@@ -226,10 +237,10 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
             return become(c, e, any_integer_type, {.integer = value});
         }
     }
-    const auto is_narrow = [](const Type& t) { return t.is_any() || t.bits <= 32; };
-    const bool wanted =
-        (expected && is_single(*expected)) || is_single(*left->type) || is_single(*right->type);
-    const bool narrow = wanted && is_narrow(*left->type) && is_narrow(*right->type);
+    const bool is_due = expected && is_single(*expected),
+               is_of_codesys = e->place.dialect().vendor == Vendor::codesys;
+    const bool narrow = is_of_codesys ? are_single(*left->type, *right->type)
+                                      : may_be_single(*left->type, *right->type, is_due);
     const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {
         if (widens(*operand->type, type) || operand->type->is_any())
@@ -237,7 +248,10 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         convert(c, operand, type);
         return true;
     };
-    return widen(left) && widen(right) ? &type : nullptr;
+    if (!widen(left) || !widen(right)) return nullptr;
+    if (narrow || !is_due || !is_of_codesys) return &type;
+    e->type = &type;
+    return convert(c, e, real_type);
 }
 
 }  // namespace
@@ -261,7 +275,7 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];
     const Type* type = check(c, operand, expected);
     if (!type) return nullptr;
-    if (e->op == Word::not_) take_bits_of_enumeration(c, operand);
+    take_number_of_enumeration(c, operand);
     reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
     if (e->op == Word::not_) take_width(c, operand, expected);
     if (e->op == Word::minus) take_sign(c, operand);

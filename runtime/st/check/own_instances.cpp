@@ -33,11 +33,73 @@ Variable& keep_beside(Checking& c, const Variable& like, std::string text, const
     return made;
 }
 
+/// Whether an instance has room for what a section declares.
+bool has_room(Section section) {
+    return section != Section::in_out && section != Section::static_ &&
+           section != Section::external && section != Section::global;
+}
+
+/// The block of the sources that a type is, or an array of; null: it is none.
+const Pou* block_of(const Checking& c, const TypeText* text) {
+    while (text && text->kind == TypeText::Kind::array) text = text->element;
+    if (!text || text->kind != TypeText::Kind::name) return nullptr;
+    const std::string_view name = text->name.text;
+    const auto found = c.blocks_by_name->find(name.substr(name.rfind('.') + 1));
+    return found == c.blocks_by_name->end() ? nullptr : found->second;
+}
+
+void note_blocks(Checking& c) {
+    c.blocks_by_name.emplace();
+    for (const Pou* unit : c.tree.units) {
+        const std::string_view name = unit->name.text;
+        if (unit->kind == PouKind::function_block)
+            c.blocks_by_name->insert_or_assign(name.substr(name.rfind('.') + 1), unit);
+    }
+}
+
+/// The blocks of what it declares, in its methods too, and what it extends.
+std::vector<const Pou*> declared_in(const Checking& c, const Pou& block) {
+    std::vector<const Pou*> found;
+    const auto add = [&](const TypeText* text) {
+        if (const Pou* part = block_of(c, text)) found.push_back(part);
+    };
+    const auto add_all = [&](const Pou& unit) {
+        for (const DeclarationBlock& section : unit.blocks)
+            if (has_room(section.section))
+                for (const Declaration* declared : section.declarations) add(declared->type);
+        add(unit.result);
+    };
+    add_all(block);
+    for (const Pou* method : block.methods) add_all(*method);
+    for (const Token& base : block.bases) {
+        const TypeText text{.name = base};
+        add(&text);
+    }
+    return found;
+}
+
+/// The blocks that an instance of it would have room for, by what they declare.
+const std::unordered_set<const Pou*>& parts_of(Checking& c, const Pou& block) {
+    if (!c.blocks_by_name) note_blocks(c);
+    const auto [it, added] = c.parts_of_blocks.try_emplace(&block);
+    if (!added) return it->second;
+    std::vector<const Pou*> open = declared_in(c, block);
+    while (!open.empty()) {
+        const Pou* part = open.back();
+        open.pop_back();
+        if (!it->second.insert(part).second) continue;
+        for (const Pou* next : declared_in(c, *part)) open.push_back(next);
+    }
+    return it->second;
+}
+
 }  // namespace
 
-bool is_its_own_block(const Routine& routine, const Type* type) {
+bool is_its_own_block(Checking& c, const Routine& routine, const Type* type) {
     const bool is_method = routine.owner && !routine.is_test() && !routine.is_prototype();
-    return is_method && type && type == routine.owner->type;
+    if (!is_method || !type || type->kind != Type::Kind::block || !type->routine) return false;
+    return type == routine.owner->type ||
+           parts_of(c, *type->routine->pou).contains(routine.owner->pou);
 }
 
 void begin_anew(Checking& c, Routine& routine, Variable& variable) {

@@ -122,6 +122,7 @@ const Type* check_member(Checking& c, Expression*& e) {
         found->used = true;
         e->variable = found;
         if (found->space == Space::overlay) return use_overlay(c, e, *found);
+        if (found->pointer) return use_kept_pointer(c, e, *found);
         if (found->space == Space::global && type->kind == Kind::block) return use_only_one(c, e);
         return found->type;
     }

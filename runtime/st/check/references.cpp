@@ -461,4 +461,14 @@ bool coerce_reference(Checking& c, Expression*& e, const Type& to) {
     return refuse_target(c, *e, to, from);
 }
 
+const Type* use_kept_pointer(Checking& c, Expression*& e, const Variable& member) {
+    e->type = member.type;
+    return coerce(c, e, *member.pointer) ? e->type : nullptr;
+}
+
+Expression* keeper_of_pointer(Expression* e) {
+    Expression* kept = e->kind == E::converted ? e->operands[0] : nullptr;
+    return kept && kept->variable && kept->variable->pointer ? kept : e;
+}
+
 }  // namespace lineshaft::st

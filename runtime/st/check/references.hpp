@@ -18,6 +18,11 @@ void resolve_targets(Checking& c);
 /// A number of 32 bits or more holds where a POINTER points, and is made one again.
 bool holds_address(const Type& type);
 
+/// `e`, which means the member of a UNION that keeps a POINTER, becomes that.
+const Type* use_kept_pointer(Checking& c, Expression*& e, const Variable& member);
+/// The member, where `e` is such a POINTER; else `e`.
+Expression* keeper_of_pointer(Expression* e);
+
 /// `e`, a variable, becomes where it is, as a reference of that type; false for what is no
 /// variable, which was told.
 bool refer(Checking& c, Expression*& e, const Type& to);

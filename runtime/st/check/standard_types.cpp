@@ -50,9 +50,11 @@ const Type* check_element_count(Checking& c, Expression*& e) {
     return become(c, e, dint_type, {.integer = count});
 }
 
-/// What is due, if that is an integer.
-const Type& type_of_bound(const Type* expected) {
-    return expected && expected->kind == Kind::integer ? expected->plain() : dint_type;
+/// What is due, if that is an integer, in CODESYS one of at most 32 bits.
+const Type& type_of_bound(const Expression& call, const Type* expected) {
+    const bool is_due = expected && expected->kind == Kind::integer &&
+                        (expected->bits <= 32 || call.place.dialect().vendor != Vendor::codesys);
+    return is_due ? expected->plain() : dint_type;
 }
 
 /// Of the dimension that a variable says: MUX over those of all, whose fault a dimension that there
@@ -105,8 +107,8 @@ const Type* check_bound(Checking& c, Expression*& e, const Type* expected) {
     if (array->kind != Kind::array && !array->is_open_array())
         return refuse(c, *e, "an array", *array);
     Expression*& wanted = e->arguments[1].value;
-    if (!is_constant(*wanted)) return check_chosen_bound(c, e, type_of_bound(expected));
-    if (array->is_open_array()) return check_open_bound(c, e, type_of_bound(expected));
+    if (!is_constant(*wanted)) return check_chosen_bound(c, e, type_of_bound(*e, expected));
+    if (array->is_open_array()) return check_open_bound(c, e, type_of_bound(*e, expected));
     const auto dimension = check_whole(c, wanted, lint_type);
     if (!dimension) return nullptr;
     Wide at = 1;
@@ -251,7 +253,8 @@ const Type* check_reals(Checking& c, Expression*& e, const Type* expected) {
     return coerce_from(c, call, 0, real) ? convert_result(c, e, real, result) : nullptr;
 }
 
-/// MIN, MAX and LIMIT of CODESYS take all types: what has an order is an enumeration's number.
+/// MIN, MAX, LIMIT and shifts of CODESYS take all types: there an enumeration's value is its
+/// number.
 void take_numbers_of_enumerations(Checking& c, Expression& call) {
     if (!call.place.dialect().enumerations_are_numbers) return;
     for (Argument& argument : call.arguments)
@@ -337,6 +340,7 @@ const Type* check_shift_of_truth(Checking& c, Expression*& e) {
 const Type* check_places(Checking& c, Expression*& e, const Type* expected) {
     Expression& call = *e;
     Expression*& places = call.arguments[1].value;
+    take_numbers_of_enumerations(c, call);
     become_number(c, places);
     take_width(c, call.arguments[0].value, expected);
     take_wide(c, call.arguments[0].value, expected);

@@ -399,6 +399,8 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     const bool is_of_target = s->target->kind == E::deref;
     const Type* type = check(c, s->target);
+    s->target = keeper_of_pointer(s->target);
+    if (type) type = s->target->type;
     if (type && type->is_open_array() && is_of_target)
         return void(c.fail(code::cannot_be_assigned, s->place,
                            "an array of any length is not assigned as a whole",

@@ -34,7 +34,8 @@ void become_whole_seconds(Checking& c, Expression*& time, const Type& moment) {
         convert(c, time, moment_type);
 }
 
-/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side.
+/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side,
+/// and in CODESYS to a DATE.
 const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
     if (op == Word::plus && e->operands[0]->type->kind == Kind::time)
@@ -43,7 +44,8 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const bool joins = op == Word::plus && a.kind == Kind::date && b.kind == Kind::clock;
     const bool distance = op == Word::minus && same_type(a, b);
     const bool moves = (op == Word::plus || op == Word::minus) && b.kind == Kind::time &&
-                       (a.kind == Kind::clock || a.kind == Kind::moment);
+                       (a.kind == Kind::clock || a.kind == Kind::moment ||
+                        (a.kind == Kind::date && e->place.dialect().vendor == Vendor::codesys));
     if (!distance && !moves && !joins)
         return refuse_operands(
             c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");

@@ -75,9 +75,17 @@ void inherit_members(Checking& c, const Token& name, Type& to, NameMap<Place>& n
     }
 }
 
+/// A POINTER is its number in the bytes of a UNION.
+void keep_as_number(Variable& member) {
+    if (!member.type || !member.type->is_pointer()) return;
+    member.pointer = member.type;
+    member.type = &bits_type(64);
+}
+
 /// A UNION keeps what has a packed form, and something.
 bool has_packed_form(Checking& c, const TypeText& text, const Type& made) {
-    for (const Variable* member : made.members) {
+    for (Variable* member : made.members) {
+        keep_as_number(*member);
         if (!member->type) return false;
         if (packed_bits(*member->type, text.place.dialect()) > 0) continue;
         return c.fail(

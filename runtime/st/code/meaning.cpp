@@ -31,6 +31,26 @@ constexpr std::uint64_t no_frame = ~std::uint64_t{0};
 
 }  // namespace
 
+std::uint64_t left_in_64(double value) {
+    value = std::nearbyint(value);
+    if (fits<std::int64_t>(value)) return whole<std::int64_t>(value);
+    if (value > 0.0 && value < 0x1p64) return static_cast<std::uint64_t>(value);
+    return std::uint64_t{1} << 63;
+}
+
+static constexpr std::uint64_t least_of_32 = 0xFFFF'FFFF'8000'0000;
+
+std::uint64_t left_in_32(double value) {
+    value = std::nearbyint(value);
+    if (value < -0x1p31) return least_of_32;
+    return fits<std::int64_t>(value) ? whole<std::int64_t>(value) : 0;
+}
+
+std::uint64_t truncated_in_32(double value) {
+    value = std::trunc(value);
+    return fits<std::int32_t>(value) ? whole<std::int32_t>(value) : least_of_32;
+}
+
 std::uint64_t truth_of_text(const std::byte* from, bool is_strict) {
     const auto is_letter = [](char a, char b) { return upper(a) == b; };
     std::string_view text = text_at(from);
@@ -53,7 +73,8 @@ void write_truth(std::byte* to, bool value) {
 void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
     fmt::memory_buffer text;
     const Wide time = (kind & of_unsigned) != 0 ? Wide{static_cast<std::uint64_t>(value)} : value;
-    add_time(text, static_cast<Type::Kind>(kind & 0xFF), time, (kind & of_long) != 0);
+    add_time(text, static_cast<Type::Kind>(kind & 0xFF), time,
+             static_cast<TimeForm>(kind / time_forms & 0xF));
     write_text(to, {text.data(), text.size()});
 }
 

@@ -106,6 +106,14 @@ inline std::uint64_t lowest_bits(double value) {
     return static_cast<std::uint64_t>(value - std::floor(value * 0x1p-64) * 0x1p64);
 }
 
+/// What CODESYS leaves of the nearest whole number, as its simulation on a PC was seen to. In 64
+/// bits they are its lowest from -2^63 to 2^64, and of any other the least number. In 32 bits and
+/// fewer they are its lowest from -2^31 to 2^63; the least number below, and 0 above and of what is
+/// no number. Its TRUNC gives the least number for all that 32 bits do not hold.
+std::uint64_t left_in_64(double value);
+std::uint64_t left_in_32(double value);
+std::uint64_t truncated_in_32(double value);
+
 template <int bits>
 std::uint64_t shift_left(std::uint64_t value, std::uint64_t places) {
     return places >= bits ? 0 : value << places & mask(bits);
@@ -216,8 +224,9 @@ bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 
-/// Of a time as a text, beside its kind: it is a long one, and without a sign.
-inline constexpr std::uint32_t of_long = 0x100, of_unsigned = 0x200;
+/// Of a time as a text, beside its kind: the number of its TimeForm times this, and that it has no
+/// sign.
+inline constexpr std::uint32_t time_forms = 0x100, of_unsigned = 0x1000;
 
 /// In a number of room: what is no character of the text is read as 0 and not written, but for one
 /// right behind its end.
@@ -252,8 +261,10 @@ void write_number(std::byte* to, T value, bool has_sign = false);
 enum class RealForm : std::uint8_t {
     shortest,  ///< that reads back as the same
     rounded,  ///< of 7 or 15 digits with a point, '12.0', and from 10^6 or 10^14 on and below 10^-4
-              ///< with an exponent, '1.5E20', as CODESYS and TwinCAT write it
-    exponent,  ///< of 7 or 14 digits with signs, '+1.500000E+20', as Siemens writes it
+              ///< with an exponent, '1.5E20', as TwinCAT writes it
+    of_codesys,  ///< a REAL of 7 digits, '12.0', with an exponent of two from 10^8 on and below
+                 ///< 10^-4, '1E08'; an LREAL of 15, from 10^14 on and below 1 '1.0e-1'; '#NaN'
+    exponent,    ///< of 7 or 14 digits with signs, '+1.500000E+20', as Siemens writes it
 };
 constexpr RealForm real_form(std::uint32_t operand) {
     return static_cast<RealForm>(operand);

@@ -94,10 +94,92 @@ void write_rounded(std::byte* to, T value) {
     set_word(to, 0, static_cast<std::uint64_t>(out - first));
 }
 
+/// Of a number that is not 0, without its sign: seven digits of a REAL, of what a REAL holds of
+/// them, so that 1/3 has 3333334; fifteen of an LREAL.
+struct Digits {
+    explicit Digits(float value) {
+        constexpr double most = 1e7;
+        const Scientific parts(value, 9);
+        float mantissa = 0.0F;
+        std::from_chars(parts.number.data(), parts.number.data() + parts.number.size(), mantissa);
+        double whole = std::floor(double{mantissa * 1e6F} + 0.5);
+        exponent = parts.exponent;
+        if (whole >= most) {
+            whole /= 10.0;
+            ++exponent;
+        }
+        const char* end =
+            std::to_chars(room.data(), room.data() + room.size(), static_cast<std::int64_t>(whole))
+                .ptr;
+        keep({room.data(), static_cast<std::size_t>(end - room.data())});
+    }
+    explicit Digits(double value) {
+        const Scientific parts(value, shown_digits<double>);
+        exponent = parts.exponent;
+        const auto end = std::ranges::remove_copy(parts.number, room.data(), '.').out;
+        keep({room.data(), static_cast<std::size_t>(end - room.data())});
+    }
+    Digits(const Digits&) = delete;
+    Digits& operator=(const Digits&) = delete;
+    std::array<char, 32> room{};
+    std::string_view text;
+    int exponent = 0;
+
+  private:
+    void keep(std::string_view all) {
+        text = all.substr(0, std::max<std::size_t>(all.find_last_not_of('0') + 1, 1));
+    }
+};
+
+/// `1E08`
+char* write_short_exponent(char* out, std::string_view digits, int exponent) {
+    *out++ = digits[0];
+    if (digits.size() > 1) *out++ = '.';
+    out = std::ranges::copy(digits.substr(1), out).out;
+    *out++ = 'E';
+    if (exponent < 0) *out++ = '-';
+    const int size = std::abs(exponent);
+    *out++ = static_cast<char>('0' + size / 10);
+    *out++ = static_cast<char>('0' + size % 10);
+    return out;
+}
+
+/// `1.0e-1`
+char* write_long_exponent(char* out, std::string_view digits, int exponent) {
+    out = write_with_point(out, digits, 1);
+    *out++ = 'e';
+    return std::to_chars(out, out + longest_result, exponent).ptr;
+}
+
+template <class T>
+char* write_finite_of_codesys(char* out, T value) {
+    constexpr bool is_single = std::is_same_v<T, float>;
+    constexpr int least = is_single ? -4 : 0, beyond = is_single ? 8 : 14;
+    if (value == T{}) return std::ranges::copy(std::string_view("0.0"), out).out;
+    const Digits digits(value);
+    const int exponent = digits.exponent;
+    if (exponent >= least && exponent < beyond)
+        return write_with_point(out, digits.text, exponent + 1);
+    return is_single ? write_short_exponent(out, digits.text, exponent)
+                     : write_long_exponent(out, digits.text, exponent);
+}
+
+template <class T>
+void write_of_codesys(std::byte* to, T value) {
+    char* const first = reinterpret_cast<char*>(to + 8);
+    char* out = first;
+    const std::string_view no_number = std::isnan(value) ? "#NaN" : "#Inf";
+    if (value < T{}) *out++ = '-';
+    out = std::isfinite(value) ? write_finite_of_codesys(out, value)
+                               : std::ranges::copy(no_number, out).out;
+    set_word(to, 0, static_cast<std::uint64_t>(out - first));
+}
+
 }  // namespace
 
 template <class T>
 void write_real(std::byte* to, T value, RealForm form) {
+    if (form == RealForm::of_codesys) return write_of_codesys(to, value);
     if (form == RealForm::shortest || !std::isfinite(value)) return write_number(to, value, false);
     form == RealForm::rounded ? write_rounded(to, value) : write_exponent(to, value);
 }
@@ -142,7 +224,7 @@ T number_of_text(const std::byte* from, bool has_groups) {
     std::array<char, longest_result> room;
     std::string_view text = text_at(from);
     if (has_groups) text = without_groups(text, room);
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
     const bool is_negative = text.starts_with('-');
     if (is_negative || text.starts_with('+')) text.remove_prefix(1);
     if (text.find_first_of(".0123456789") != 0) return T{};

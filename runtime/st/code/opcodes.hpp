@@ -171,6 +171,9 @@
     OP(round_away, real, "wr--", put(a, std::round(R(b))))                                           \
     OP(round, real, "wr--", put(a, std::nearbyint(R(b))))                                            \
     OP(lowest_bits, real, "wr--", put(a, lowest_bits(R(b))))                                         \
+    OP(left_in_64, real, "wr--", put(a, left_in_64(R(b))))                                           \
+    OP(left_in_32, real, "wr--", put(a, left_in_32(R(b))))                                           \
+    OP(truncated_in_32, real, "wr--", put(a, truncated_in_32(R(b))))                                 \
     OP(narrow, real, "wr--", put(a, narrow(R(b))))                                                   \
     OP(real_from_signed, real, "wr--", put(a, double{static_cast<float>(I(b))}))                     \
     OP(real_from_unsigned, real, "wr--", put(a, double{static_cast<float>(U(b))}))                   \

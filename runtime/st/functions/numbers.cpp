@@ -22,8 +22,13 @@ Slot emit_fraction(Emission& e) {
 Slot emit_whole(Emission& e) {
     const Slot whole = e.emit(e.call.standard->op, e.value(0));
     const Place& place = e.call.place;
-    if (place.dialect().vendor == Vendor::siemens && !place.source->is_prelude())
+    const Dialect& dialect = place.dialect();
+    if (!dialect.reals_leave_lowest_bits || place.source->is_prelude())
+        return e.result(of_type(Op::round_sint, e.type()), whole);
+    if (dialect.vendor == Vendor::siemens)
         return e.result(of_type(Op::wrap_sint, e.type()), e.emit(Op::lowest_bits, whole));
+    if (e.call.standard->op == Op::truncate)
+        return e.result(of_type(Op::wrap_sint, e.type()), e.emit(Op::truncated_in_32, whole));
     return e.result(of_type(Op::round_sint, e.type()), whole);
 }
 

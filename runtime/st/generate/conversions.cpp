@@ -24,14 +24,21 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
     return look_up(w, slot, places, least);
 }
 
-/// In SCL and CODESYS what is beyond the type leaves its lowest bits.
-Slot nearest(Writing& w, Slot slot, const Type& to, Slot wanted) {
+/// In SCL and CODESYS what is beyond the type leaves bits there: in SCL its lowest.
+Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
+    if (dialect.vendor == Vendor::siemens) return Op::lowest_bits;
+    if (to.bits == 64) return Op::left_in_64;
+    return truncates ? Op::truncated_in_32 : Op::left_in_32;
+}
+
+Slot nearest(Writing& w, Slot slot, const Type& to, bool truncates, Slot wanted) {
     const auto* source = w.place.source;
     const bool are_left =
         source && source->dialect.reals_leave_lowest_bits && !source->is_prelude();
     if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
-    if (to.bits == 64) return w.emit(Op::lowest_bits, wanted, slot);
-    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(Op::lowest_bits, none, slot));
+    const Op left = bits_left(source->dialect, to, truncates);
+    if (to.bits == 64) return w.emit(left, wanted, slot);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, w.emit(left, none, slot));
 }
 
 Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool truncates,
@@ -50,7 +57,7 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     if (to.kind == Kind::bits && from.bits == to.bits)
         return to.bits == 32 ? w.emit(Op::real_bits, wanted, slot) : slot;
     if (truncates) slot = w.emit(Op::truncate, none, slot);
-    return nearest(w, slot, to, wanted);
+    return nearest(w, slot, to, truncates, wanted);
 }
 
 /// Of a DT and a DATE its DATE and its TOD; all others keep their ns.

@@ -6,6 +6,7 @@
 #include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
+#include "runtime/st/types/value_text.hpp"
 
 namespace lineshaft::st {
 
@@ -25,7 +26,22 @@ Slot constant_text(Writing& w, std::string_view text) {
 
 meaning::RealForm form_of_reals(const Dialect& dialect) {
     using enum meaning::RealForm;
-    return dialect.reals_have_exponents ? exponent : dialect.reals_are_rounded ? rounded : shortest;
+    switch (dialect.text_of_real) {
+        case TextOfReal::shortest:
+            return shortest;
+        case TextOfReal::rounded:
+            return rounded;
+        case TextOfReal::of_codesys:
+            return of_codesys;
+        case TextOfReal::with_exponent:
+            return exponent;
+    }
+    return shortest;
+}
+
+TimeForm form_of_time(const Type& type, Vendor vendor) {
+    if (!type.counts_ns || vendor == Vendor::siemens) return TimeForm::plain;
+    return vendor == Vendor::codesys ? TimeForm::of_long_in_codesys : TimeForm::of_long;
 }
 
 /// The name of the value goes to the text, which stays where the number is that of none.
@@ -103,9 +119,10 @@ Slot text_conversion(Writing& w, const Expression& e) {
             return made;
         }
     if (from.type->is_time()) {
-        const bool is_long = from.type->counts_ns && e.place.dialect().vendor != Vendor::siemens;
         w.put(Op::text_of_time, made, number,
-              static_cast<Slot>(from.type->kind) | (is_long ? meaning::of_long : 0U) |
+              static_cast<Slot>(from.type->kind) |
+                  static_cast<Slot>(form_of_time(*from.type, e.place.dialect().vendor)) *
+                      meaning::time_forms |
                   (from.type->is_unsigned_64() ? meaning::of_unsigned : 0U));
         if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
             e.place.dialect().vendor == Vendor::codesys)

@@ -51,7 +51,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .vendor = Vendor::codesys,
                          .texts_have_any_length = true,
                          .addresses_count = AddressCount::sizes,
-                         .reals_are_rounded = true,
+                         .text_of_real = TextOfReal::of_codesys,
                          .most_aligned = 8,
                          .text_length = 80,
                          .long_numbers_count_time = true,
@@ -75,6 +75,7 @@ const Dialect twincat = [] {
     Dialect made = codesys;
     made.addresses_count = AddressCount::bytes;
     made.reals_leave_lowest_bits = false;
+    made.text_of_real = TextOfReal::rounded;
     return made;
 }();
 
@@ -82,7 +83,8 @@ const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::matiec;
     made.addresses_of_sizes_are_apart = true;
-    made.reals_are_rounded = made.enumerations_begin_at_zero = made.rounds_away = false;
+    made.text_of_real = TextOfReal::shortest;
+    made.enumerations_begin_at_zero = made.rounds_away = false;
     made.real_literals_are_lreal = made.reals_leave_lowest_bits = false;
     made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.most_aligned = iec.most_aligned;
@@ -101,7 +103,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .vendor = Vendor::siemens,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
-                     .reals_have_exponents = true,
+                     .text_of_real = TextOfReal::with_exponent,
                      .long_numbers_count_time = true,
                      .reals_leave_lowest_bits = true,
                      .zero_divides_to_zero = true,

@@ -11,6 +11,10 @@ namespace lineshaft::st {
 /// Whose blocks of the standard differ from it.
 enum class Vendor : std::uint8_t { none, automation_studio, codesys, matiec, siemens };
 
+/// How REAL_TO_STRING writes 12.0: '12'; '12.0', as TwinCAT has it; the same, and of LREALs below 1
+/// and of what is not finite otherwise, as CODESYS has it; '+1.200000E+1', as Siemens has it.
+enum class TextOfReal : std::uint8_t { shortest, rounded, of_codesys, with_exponent };
+
 /// What one language of the name Structured Text means where another means something else. A source
 /// has one dialect for good, see Source. All else is read alike in all of them.
 struct Dialect {
@@ -42,11 +46,10 @@ struct Dialect {
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
     AddressCount addresses_count = AddressCount::bytes;
     bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC
-    bool reals_are_rounded = false;             ///< REAL_TO_STRING(12.0) is '12.0', else '12'
-    bool reals_have_exponents = false;          ///< REAL_TO_STRING(12.0) is '+1.200000E+1'
-    std::uint8_t most_aligned = 1;              ///< bytes that a member of a structure begins at
-    std::uint32_t text_length = 254;            ///< characters of a STRING without a length
-    bool long_numbers_count_time = false;       ///< TIME_TO_LINT(T#1s) is 1000, else in ns
+    TextOfReal text_of_real = TextOfReal::shortest;
+    std::uint8_t most_aligned = 1;         ///< bytes that a member of a structure begins at
+    std::uint32_t text_length = 254;       ///< characters of a STRING without a length
+    bool long_numbers_count_time = false;  ///< TIME_TO_LINT(T#1s) is 1000, else in ns
     std::uint8_t reckons_in = 0;  ///< bits, whole numbers that have fewer, until they are kept:
                                   ///< 32 as C and CODESYS have it; else in their own
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due

@@ -226,8 +226,9 @@ bool same_type(const Type& a, const Type& b) {
         case Kind::integer:
         case Kind::bits:
         case Kind::real:
-            return a.bits == b.bits && a.is_signed == b.is_signed && !a.is_subrange &&
-                   !b.is_subrange;
+            return a.bits == b.bits && a.is_signed == b.is_signed &&
+                   a.is_subrange == b.is_subrange &&
+                   (!a.is_subrange || (smallest(a) == smallest(b) && largest(a) == largest(b)));
         case Kind::text:
             return a.length == b.length && a.is_open == b.is_open && a.is_wide == b.is_wide;
         case Kind::array:

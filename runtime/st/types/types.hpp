@@ -204,6 +204,8 @@ struct Variable {
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
+    /// Of a UNION's member that keeps where a POINTER points, as the number that its type has.
+    const Type* pointer = nullptr;
 
     /// Of one call only.
     bool ends_with_call() const {

@@ -28,7 +28,7 @@ std::string real_text(double value, bool is_long) {
 
 using Out = std::back_insert_iterator<fmt::memory_buffer>;
 
-void add_duration(Out to, Wide nanoseconds, bool is_long) {
+void add_duration(Out to, Wide nanoseconds, TimeForm form) {
     constexpr std::pair<std::uint64_t, const char*> units[] = {{86'400'000'000'000, "d"},
                                                                {3'600'000'000'000, "h"},
                                                                {60'000'000'000, "m"},
@@ -37,21 +37,24 @@ void add_duration(Out to, Wide nanoseconds, bool is_long) {
                                                                {1'000, "us"},
                                                                {1, "ns"}};
     auto left = static_cast<std::uint64_t>(nanoseconds < 0 ? -nanoseconds : nanoseconds);
-    fmt::format_to(to, "{}#{}{}", is_long ? "LTIME" : "T", nanoseconds < 0 ? "-" : "",
-                   nanoseconds == 0 ? "0s" : "");
+    const char* const none = form == TimeForm::of_long_in_codesys ? "0ns" : "0s";
+    fmt::format_to(to, "{}#{}{}", form == TimeForm::plain ? "T" : "LTIME",
+                   nanoseconds < 0 ? "-" : "", nanoseconds == 0 ? none : "");
     for (const auto& [size, unit] : units) {
         if (left >= size) fmt::format_to(to, "{}{}", left / size, unit);
         left %= size;
     }
 }
 
-void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
+void add_date(Out to, Kind kind, std::int64_t since_1970, TimeForm form) {
     using namespace std::chrono;
     const sys_time<nanoseconds> moment{nanoseconds(since_1970)};
     const auto midnight = floor<days>(moment);
     const year_month_day day(midnight);
     const hh_mm_ss clock(moment - midnight);
-    const char* const of_date = is_long ? "LDATE" : "D";
+    const bool is_long = form != TimeForm::plain,
+               is_of_codesys = form == TimeForm::of_long_in_codesys;
+    const char* const of_date = is_of_codesys ? "LD" : is_long ? "LDATE" : "D";
     fmt::format_to(to, "{}#",
                    kind == Kind::date    ? of_date
                    : kind == Kind::clock ? (is_long ? "LTOD" : "TOD")
@@ -65,7 +68,7 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, bool is_long) {
     fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "", hours.count(),
                    clock.minutes().count(), clock.seconds().count());
     const auto rest = clock.subseconds().count();
-    if (rest % 1'000'000 != 0)
+    if (rest % 1'000'000 != 0 || (rest != 0 && is_of_codesys))
         fmt::format_to(to, ".{:09}", rest);
     else if (rest != 0)
         fmt::format_to(to, ".{:03}", rest / 1'000'000);
@@ -108,11 +111,11 @@ std::string time_literal(std::int64_t nanoseconds) {
     return literal(Kind::time, nanoseconds);
 }
 
-void add_time(fmt::memory_buffer& to, Kind kind, Wide nanoseconds, bool is_long) {
+void add_time(fmt::memory_buffer& to, Kind kind, Wide nanoseconds, TimeForm form) {
     if (kind == Kind::time)
-        add_duration(std::back_inserter(to), nanoseconds, is_long);
+        add_duration(std::back_inserter(to), nanoseconds, form);
     else
-        add_date(std::back_inserter(to), kind, static_cast<std::int64_t>(nanoseconds), is_long);
+        add_date(std::back_inserter(to), kind, static_cast<std::int64_t>(nanoseconds), form);
 }
 
 std::optional<Wide> read_time(std::string_view text, Kind kind) {

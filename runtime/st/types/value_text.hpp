@@ -16,9 +16,14 @@ std::string value_text(const Type& type, std::uint64_t slot);
 /// `T#1d2h3m4s5ms6us7ns`
 std::string time_literal(std::int64_t nanoseconds);
 
-/// Adds it, of a kind with a time: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
-/// `DT#2020-02-29-12:30:15`; `is_long` of LTIME and its like, `LTIME#1s500ms`. Allocates nothing.
-void add_time(fmt::memory_buffer& to, Type::Kind kind, Wide nanoseconds, bool is_long = false);
+/// How a time is written: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
+/// `DT#2020-02-29-12:30:15`; of LTIME and its like `LTIME#1s500ms`, `LDATE#2020-02-29`; of these in
+/// CODESYS `LD#2020-02-29`, `LTIME#0ns`, and nine digits behind the point.
+enum class TimeForm : std::uint8_t { plain, of_long, of_long_in_codesys };
+
+/// Adds it, of a kind with a time. Allocates nothing.
+void add_time(fmt::memory_buffer& to, Type::Kind kind, Wide nanoseconds,
+              TimeForm form = TimeForm::plain);
 
 /// What stands behind the '#' of a literal of a kind with a time, in ns; empty if it is none.
 std::optional<Wide> read_time(std::string_view text, Type::Kind kind);

@@ -174,3 +174,29 @@ TEST_CASE("Structured Text: a scan allocates nothing", "[st]") {
     for (int i = 0; i < 100; ++i) kind.scan_blocks(places[0], 1, {}, {kind.context, places.data()});
     CHECK(test::allocations() == before);
 }
+
+TEST_CASE("Structured Text: TwinCAT writes reals as it did, and does not leave bits of them",
+          "[st]") {
+    const auto file = std::make_shared<const SourceFile>(SourceFile{
+        "Main.TcPOU",
+        "PROGRAM Main\n"
+        "VAR\n"
+        "    one : LREAL := 1.0; large : REAL := -3.402823E38; is_same : BOOL; n : INT;\n"
+        "END_VAR\n"
+        "is_same := LREAL_TO_STRING(one / 3.0) = '0.333333333333333'\n"
+        "    AND LREAL_TO_STRING(one * 1.5E14) = '1.5E14'\n"
+        "    AND LREAL_TO_STRING(one * -0.000012) = '-1.2E-5'\n"
+        "    AND REAL_TO_STRING(large) = '-3.402823E38'\n"
+        "    AND LREAL_TO_STRING(one * 999999.0) = '999999.0'\n"
+        "    AND TO_STRING(LREAL_TO_REAL(one * 1000000.0)) = '1.0E6';\n"
+        "n := LREAL_TO_INT(one * 70000.0);\n"
+        "END_PROGRAM\n"});
+    Diagnostics out;
+    const auto library = st::compile({file}, standard_blocks(), out);
+    INFO(out.render());
+    REQUIRE(library);
+    st::Instances instances(*library);
+    instances.scan(0, 1'000'000);
+    CHECK(instances.text("is_same") == "true");
+    CHECK(instances.faults() == std::vector<std::string>{"11 out_of_range"});
+}
