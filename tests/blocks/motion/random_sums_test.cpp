@@ -311,12 +311,15 @@ class Sums : public Sequences {
 
     static bool is_move(const Seen& s) { return !is_superimposed(s.request.command); }
 
-    /// What goes on is halted.
+    /// What goes on is halted, without blending: SoftMotion refuses that.
     bool ends(std::int64_t) override {
         const Axis& x = axis(0);
         const bool holds = x.state == AxisState::continuous_motion && x.active.exists() &&
                            x.doing == Axis::Doing::holding && queue_.empty() && !x.added.exists();
-        if (holds) set_all(".Execute", "MC_Halt_", 1);
+        if (holds) {
+            set_all(".BufferMode", "MC_Halt_", static_cast<double>(BufferMode::buffered));
+            set_all(".Execute", "MC_Halt_", 1);
+        }
         return x.state == AxisState::standstill && queue_.empty() && !sent_;
     }
 
