@@ -243,6 +243,37 @@ def parts():
     return path, path.with_suffix(".st")
 
 
+def test_memory_that_is_shared():
+    """Members of a UNION, and variables at addresses as they stand there now; neither is set by hand."""
+    source, of_it = folder / "shared.st", folder / "shared.yaml"
+    source.write_text("VAR_GLOBAL lamp AT %QW4 : WORD; END_VAR\n"
+                      "TYPE Pair : STRUCT low, high : WORD; END_STRUCT END_TYPE\n"
+                      "TYPE Bytes : UNION whole : DWORD; each : ARRAY[0..3] OF BYTE; real : REAL; pair : Pair; END_UNION END_TYPE\n"
+                      "PROGRAM Main\n"
+                      "VAR all : ARRAY[1..2] OF Bytes; beside : LWORD := 16#1122334455667788;\n"
+                      "word AT %MW10 : WORD; bit AT %QX0.1 : BOOL; END_VAR\n"
+                      "all[2].whole := 16#3F800001; word := 16#ABCD; bit := TRUE; lamp := 7;\n"
+                      "beside := beside;\nEND_PROGRAM\n", encoding="utf-8")
+    of_it.write_text("lineshaft: 1\ntasks: {main: {every: 10 ms}}\ndialect: codesys\nsources: shared.st\n"
+                     "blocks: {p: {type: Main, task: main}}\nrun: {for: 10 ms}\n", encoding="utf-8")
+    client = Client(lineshaft)
+    client.launch(of_it, {source: [{"line": 8, "condition": "all[2].each[3] = 16#3F"}]})
+    client.event("stopped")
+    frame = client.stack()[0]["id"]
+
+    def value(text):
+        return client.request("evaluate", expression=text, frameId=frame)["result"]
+
+    members = {"whole": "16#3F800001", "each[0]": "16#1", "each[3]": "16#3F", "real": "1.0000001", "pair.low": "16#1",
+               "pair.high": "16#3F80"}
+    assert {name: value("all[2]." + name) for name in members} == members
+    assert [value(name) for name in ("all[1].pair.high", "word", "bit", "lamp", "word + 1")] == ["16#0", "16#ABCD", "TRUE", "16#7", "43982"]
+    shown = client.inside(client.request("evaluate", expression="all[2].pair", frameId=frame)["variablesReference"])
+    assert {name: v["value"] for name, v in shown.items()} == {"low": "16#1", "high": "16#3F80"}
+    assert (client.value("Locals", "word"), client.value("Locals", "bit")) == ("16#ABCD", "TRUE")
+    client.end()
+
+
 def test_watches_as_the_program_reckons():
     """Types of the language: REAL in its own precision, INT that leaves its range; names of the program and of the catalogue."""
     path, text = parts()

@@ -245,6 +245,9 @@ class Reckoning {
                                         st::same_name(st::name_of_list(*source), list);
                 if (st::same_name(variable->text, full) || is_of_list) return variable;
             }
+        for (const st::Variable* variable : checked_.image.variables)
+            if (variable->section == st::Section::global && st::same_name(variable->text, full))
+                return variable;
         return nullptr;
     }
 
@@ -290,14 +293,10 @@ class Reckoning {
         const st::Type& type = *whole.seat.type;
         const st::Variable* part = st::find_member(type, e.token.text);
         if (!part) throw Failed(unknown(e));
-        std::byte* const in_block = whole.seat.at + 8 * std::size_t{part->slot};
         if (part->is_byte)
             return {.seat = {part->type, nullptr, &frame_},
                     .value = {.integer = read<std::uint8_t>(whole.seat.at + part->byte)}};
-        const Seat seat = type.kind == st::Type::Kind::block
-                              ? seat_of(*part, whole.seat.at, *whole.seat.frame)
-                              : Seat{part->type, in_block, whole.seat.frame};
-        return at(seat, e, part->unit);
+        return at(member_at(whole.seat, *part), e, part->unit);
     }
 
     Operand element(const st::Expression& e) {
@@ -313,9 +312,8 @@ class Reckoning {
                 throw Failed(fmt::format("'{}' is not an index from {} to {}",
                                          argument.value->place.text(), array.lower, array.upper));
             const auto at = static_cast<std::size_t>(index - array.lower);
-            whole = load({array.element, whole.seat.at + 8 * at * st::element_slots(array),
-                          whole.seat.frame},
-                         whole.unit);
+            whole =
+                load(whole.seat.part(array.element, 8 * at * st::element_slots(array)), whole.unit);
         }
         return whole;
     }

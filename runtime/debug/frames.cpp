@@ -31,6 +31,7 @@ Frame frame_at(const st::Halt& halt, const st::Library::Made& made, const Machin
             .context = &halt.context,
             .code = &halt.code,
             .machine = &machine,
+            .image = &made.checked.image,
             .of = &made.generated.code.routines[static_cast<std::size_t>(number)]};
 }
 

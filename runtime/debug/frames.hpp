@@ -18,7 +18,8 @@ struct Frame {
     const Context* context = nullptr;  ///< of that
     const st::Code* code = nullptr;
     const Machine* machine = nullptr;
-    const Frame* outer = nullptr;  ///< that called it; null: none, or not looked for
+    const st::Image* image = nullptr;  ///< the process image that sources see
+    const Frame* outer = nullptr;      ///< that called it; null: none, or not looked for
     const st::CodeRoutine* of = nullptr;
     /// What a later call on its instance has put aside of its variables; null: nothing.
     std::byte* aside = nullptr;

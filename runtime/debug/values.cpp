@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/debug/packed_values.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
 
@@ -66,9 +67,8 @@ List elements_of(const Seat& seat, std::size_t first, std::size_t count) {
         first + std::min(count == 0 ? size : count, size - std::min(first, size));
     List elements;
     for (std::size_t i = first; i < end; ++i)
-        elements.push_back(
-            show(fmt::format("[{}]", array.lower + static_cast<std::int64_t>(i)),
-                 {array.element, seat.at + 8 * i * st::element_slots(array), seat.frame}));
+        elements.push_back(show(fmt::format("[{}]", array.lower + static_cast<std::int64_t>(i)),
+                                seat.part(array.element, 8 * i * st::element_slots(array))));
     return elements;
 }
 
@@ -119,13 +119,12 @@ void show_parts(Shown& shown, const Seat& seat) {
             };
             break;
         case Kind::structure:
+        case Kind::union_:
             shown.inside = [seat](auto, auto) {
                 List members;
                 for (const st::Variable* member : seat.type->members)
                     members.push_back(
-                        show(std::string(member->text),
-                             {member->type, seat.at + 8 * std::size_t{member->slot}, seat.frame},
-                             member->unit));
+                        show(std::string(member->text), member_at(seat, *member), member->unit));
                 return members;
             };
             break;
@@ -155,6 +154,7 @@ std::string text_of(const Seat& seat) {
     switch (seat.type->kind) {
         case Kind::array:
         case Kind::structure:
+        case Kind::union_:
         case Kind::block:
         case Kind::standard:
             return seat.type->name;
@@ -184,10 +184,16 @@ Shown show(std::string name, const Seat& seat, const std::string& unit) {
         .name = std::move(name),
         .value = with_unit(text_of(seat), unit),
         .type = seat.type->name,
-        .at = seat.at,
+        .at = seat.copy ? nullptr : seat.at,
         .bytes = 8 * std::size_t{is_block ? seat.type->routine->variables_end : seat.type->slots}};
     show_parts(shown, seat);
     return shown;
+}
+
+Seat member_at(const Seat& whole, const st::Variable& member) {
+    if (whole.type->kind == Kind::union_) return member_of_union(whole, member);
+    if (whole.type->kind == Kind::block) return seat_of(member, whole.at, *whole.frame);
+    return whole.part(member.type, 8 * std::size_t{member.slot});
 }
 
 Seat target_of(const Seat& reference) {
@@ -238,6 +244,8 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
         }
         case st::Space::global:
             return {variable.type, global_at(variable.global, frame) + offset, &frame};
+        case st::Space::image:
+            return seat_in_image(variable, frame);
         default:
             return {};
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,16 @@ struct Seat {
     const st::Type* type = nullptr;
     std::byte* at = nullptr;
     const Frame* frame = nullptr;
+    std::shared_ptr<const void> copy = {};  ///< of packed memory, in which `at` is; else none
+
+    /// A part of it, so many bytes behind its begin.
+    Seat part(const st::Type* of, std::size_t bytes) const { return {of, at + bytes, frame, copy}; }
 };
 
 Shown show(std::string name, const Seat& seat, const std::string& unit = {});
+
+/// A member of a structure, a UNION or a block; `at` null: nowhere.
+Seat member_at(const Seat& whole, const st::Variable& member);
 
 /// What a reference is to, as the machine reaches it; `at` null: no value of its type, or NULL.
 Seat target_of(const Seat& reference);
