@@ -46,11 +46,20 @@ Op least(Emission& e) {
     return e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed);
 }
 
+/// Of two of which one is no number the first is kept, in CODESYS the second.
+bool keeps_second(const Emission& e) {
+    return e.call.place.dialect().vendor == Vendor::codesys;
+}
+
 Slot emit_extremum(Emission& e) {
     const Op op = e.call.standard->op == Op::max_signed ? greatest(e) : least(e);
     Slot so_far = e.value(0);
-    for (std::size_t i = 1; i + 1 < e.count(); ++i) so_far = e.emit(op, so_far, e.value(i));
-    return e.result(op, so_far, e.value(e.count() - 1));
+    for (std::size_t i = 1; i + 1 < e.count(); ++i) {
+        const Slot next = e.value(i);
+        so_far = keeps_second(e) ? e.emit(op, next, so_far) : e.emit(op, so_far, next);
+    }
+    const Slot last = e.value(e.count() - 1);
+    return keeps_second(e) ? e.result(op, last, so_far) : e.result(op, so_far, last);
 }
 
 Slot emit_limit(Emission& e) {
@@ -64,6 +73,7 @@ Slot emit_limit(Emission& e) {
         e.land();
         return limited;
     }
+    if (keeps_second(e)) return e.result(least(e), mx, e.emit(greatest(e), in, mn));
     if (vendor != Vendor::siemens) return e.result(least(e), e.emit(greatest(e), in, mn), mx);
     const Slot limited = e.emit(least(e), e.emit(greatest(e), in, mn), mx);
     e.put(if_less, mx, mn, limited, in);
