@@ -5,6 +5,7 @@ usage: plan.py LINESHAFT
 """
 
 import pathlib
+import random
 import re
 import signal
 import subprocess
@@ -216,19 +217,64 @@ def check_dialogue(lineshaft):
 
 
 def check_times_of_curves(lineshaft):
-    """A path's duration is that of its samples; the file may stand behind the limits."""
+    """The last row of samples is the end, at the path's duration, however far they are from each other, and MC_MovePath
+    takes as long; the file may stand behind the limits."""
     limits = ["--limits", "100,1000,20000", "80,1500,50000"]
     points = ((0, 0), (10, 5), (20, -5), (30, 8), (50, 0), (40, -20), (5, -12))
     for curve in ("line", "arc", "spline", "cubic"):
-        rows = "".join(f"{x},{y},{curve},{x + 3},{y - 4}\n" for x, y in points)
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / "points.csv"
-            file.write_text("position1,position2,curve,border1,border2\n" + rows)
-            summary, samples = (run(lineshaft, "--path", *more, *limits, str(file))[1].splitlines()
-                                for more in ([], ["--every", "0.0005"]))
-        seconds = [float(rows[-1].split(",")[column]) for rows, column in ((summary, -1), (samples, 1))]
-        if not -1e-4 < seconds[1] - seconds[0] < 1.5e-3:
-            yield f"--path, {curve}: {seconds[0]} s, and samples until {seconds[1]} s"
+        rows = [(x, y, curve, x + 3, y - 4) for x, y in points]
+        yield from check_times_of_path(lineshaft, curve, limits, rows)
+    for seed in range(7):
+        draw = random.Random(seed)
+        limits = ["--deviation", "0.5", "--limits", *(
+            ",".join(str(10 ** draw.uniform(*decades)) for decades in ((1, 2), (2, 4), (3, 5))) for _ in range(3))]
+        kinds = draw.choice((["cubic"], ["spline"], ["line", "arc", "spline", "cubic"]))
+        rows = [(0, 0, "line", 0, 0)] + [
+            (*(draw.uniform(-20, 20) for _ in range(2)), draw.choice(kinds), *(draw.uniform(-20, 20) for _ in range(2)))
+            for _ in range(draw.choice((5, 12)))]
+        yield from check_times_of_path(lineshaft, f"seed {seed}", limits, rows)
+
+
+def check_times_of_path(lineshaft, name, limits, points):
+    text = "position1,position2,curve,border1,border2\n" + "".join(",".join(map(str, point)) + "\n" for point in points)
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "points.csv"
+        file.write_text(text)
+        said = [run(lineshaft, "--path", *more, *limits, str(file))[1].splitlines()[-1].split(",")
+                for more in ([], ["--every", "0.004"], ["--every", "0.07"])]
+        duration = float(said[0][-1])
+        for row in said[1:]:
+            if abs(float(row[1]) - duration) > 1e-9 * duration or list(map(float, row[6:8])) != list(points[-1][:2]):
+                yield f"--path, {name}: {duration} s, and samples until {row}"
+        for scan in (2, 5):
+            took = time_of_group(lineshaft, pathlib.Path(folder), limits, points, scan)
+            if not -1e-9 < took - duration < 1e-3 * scan + 1e-9:
+                yield f"--path, {name}: {duration} s, and MC_MovePath takes {took} s in scans of {scan} ms"
+
+
+def time_of_group(lineshaft, folder, limits, points, scan):
+    """From the scan in which MC_MovePath is taken up to that in which it is done [s]."""
+    values = [list(map(float, limit.split(","))) for limit in limits[limits.index("--limits") + 1:]]
+    path, first, second = values[0], values[1], values[-1]
+    defaults = "default_velocity: {0} mm/s, default_acceleration: {1} mm/s^2, default_jerk: {2} mm/s^3"
+    axis = "{{type: axis, task: servo, " + defaults + ", default_deceleration: {1} mm/s^2}}\n"
+    deviation = limits[1] if limits[0] == "--deviation" else "0"
+    rows = ", ".join(f"[{x!r} mm, {y!r} mm, 0 mm, {kind}, {a!r} mm, {b!r} mm, 0 mm]" for x, y, kind, a, b in points[1:])
+    (folder / "group.yaml").write_text(
+        f"lineshaft: 1\ntasks: {{servo: {{every: {scan} ms}}}}\nblocks:\n"
+        "  g: {type: axes_group, task: servo, " + defaults.format(*path) + "}\n"
+        "  x: " + axis.format(*first) + "  y: " + axis.format(*second) +
+        "  one: {type: MC_AddAxisToGroup, task: servo, AxesGroup: g, Axis: x, IdentInGroup: 1, Execute: true}\n"
+        "  two: {type: MC_AddAxisToGroup, task: servo, AxesGroup: g, Axis: y, IdentInGroup: 2, Execute: one.Done}\n"
+        "  on: {type: MC_GroupEnable, task: servo, AxesGroup: g, Execute: two.Done}\n"
+        f"  way: {{type: path_table, task: servo, points: [{rows}]}}\n"
+        "  move: {type: MC_MovePath, task: servo, AxesGroup: g, PathData: way, TransitionMode: mcTMMaxCornerDeviation, "
+        f"TransitionParameter: {deviation} mm, Execute: on.Done}}\n"
+        "run: {for: 1000 s, until: move.Done}\ntrace: {task: servo, signals: [move.Active, move.Done]}\n")
+    trace = folder / "group.csv"
+    subprocess.run([lineshaft, "run", str(folder / "group.yaml"), "--trace", str(trace)], capture_output=True, check=False)
+    active = [line.split(",") for line in trace.read_text().splitlines()[1:]]
+    return 1e-3 * scan * sum(1 for row in active if row[-2] in ("1", "true"))
 
 
 def check_short_paths(lineshaft):
@@ -294,6 +340,10 @@ def check_paths(lineshaft):
         code, out, err = run(lineshaft, "--path", *limits, text=text)
         if code != 2 or not err.startswith("stdin:" + message):
             yield f"--path: exit code {code}, said {err!r} instead of {message!r}"
+    bad = "position1,position2,path\n0,0,1\n10,0,1\nx,5,1\n20,0,1\n5,5,2\n6,5,2\nx,0,3\n1,0,3\n"
+    rows = [row.split(",")[:4] for row in run(lineshaft, "--path", *limits, text=bad)[1].splitlines()[1:]]
+    if rows != [["1", "0", "bad_line", "3"], ["2", "1", "", "2"], ["3", "0", "bad_line", "1"]]:
+        yield f"--path, paths with bad lines: {rows}"
     for arguments in (["--path"], limits, ["--path", "--limits", "1,2"], ["--path", "--limits", "1,0,1"]):
         if run(lineshaft, *arguments, text=line)[0] != 2:
             yield f"{arguments} is accepted"

@@ -49,11 +49,18 @@ void AxesGroup::scan(const Scan& now, const Context& context) {
         job.next = nowhere;
         take(context, job);
     }
-    if (queue.first != nowhere && has_unlaid(context)) lay(context);
+    if (has_unlaid(context)) lay(context);
 }
 
+/// What waits is put into the path at the instant at which there is room, so that the motion does
+/// not depend on when scans are.
 void AxesGroup::run(const Context& context, double dt) {
-    const PathMotion motion = path.advance(ring(), dt);
+    double left = dt;
+    while (left > 0 && has_unlaid(context) && !path.finished() && !path.lost) {
+        left -= path.advance_to(ring(), left, path.first + 1);
+        lay(context);
+    }
+    const PathMotion motion = path.advance(ring(), left);
     lead(context, motion);
     publish(motion);
     if (path.lost) {
@@ -143,7 +150,7 @@ void AxesGroup::publish(const PathMotion& motion) {
 }
 
 bool AxesGroup::has_unlaid(const Context& context) const {
-    return context.at<GroupJob>(queue.last).is_laid == 0;
+    return queue.last != nowhere && context.at<GroupJob>(queue.last).is_laid == 0;
 }
 
 bool AxesGroup::is_powered(const Context& context) const {

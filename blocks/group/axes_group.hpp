@@ -20,7 +20,7 @@ namespace lineshaft {
 /// Axes that move along one path (PLCopen Part 4 v1.0). Command blocks of any task tell it what to
 /// do, as they tell an axis; its axes are in its own task. See README.md.
 struct AxesGroup {
-    static constexpr std::size_t look_ahead = 64;  ///< pieces
+    static constexpr std::size_t look_ahead = 256;  ///< pieces
 
     AxisUnit unit = AxisUnit::mm;
     double default_velocity = 100, default_acceleration = 1000, default_jerk = 5e4;

@@ -98,7 +98,8 @@ bool is_valid(const Path& path, std::span<const PathPiece> ring) {
     if (path.count > most || path.first > path.count || path.count - path.first > ring.size() ||
         path.stretch > path.stretches || path.stretches - path.stretch > path.count - path.first ||
         !are_booleans(path.halted, path.stale, path.fresh, path.lost) ||
-        !is_valid(path.leg, path) || !std::isfinite(path.time) || path.time < 0)
+        !is_valid(path.leg, path) || !std::isfinite(path.time) || path.time < 0 ||
+        std::isnan(path.again))
         return false;
     for (std::uint64_t k = path.first; k < path.count; ++k)
         if (!is_valid(ring[k % ring.size()])) return false;

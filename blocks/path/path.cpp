@@ -78,11 +78,22 @@ PathOutlook outlook_of(const Path& path, std::span<const PathPiece> ring) {
         stretches_of(path, ring), {ring, path.first, path.count}, factor_of(path), path.braking};
 }
 
+/// A command is tried again in the next scan, and anything else at instants of the leg.
+void try_later(Path& path, bool commanded) {
+    constexpr double part_of_leg = 1.0 / 16;
+    const double lasts = path.leg.duration();
+    const double then = std::min(path.time + part_of_leg * lasts, lasts);
+    path.stale = commanded || !(then > path.time);
+    path.again = path.stale ? Path::any_time : then;
+}
+
 /// A course that ends where not all of the path is over is looked at again as soon as it comes down
 /// to that end.
 void note_leg(Path& path, std::span<const PathPiece> ring) {
     constexpr double at_least = 0.05;
-    path.stale = stops_short(path, ring);
+    path.stale = false;
+    path.again = Path::any_time;
+    if (stops_short(path, ring)) try_later(path, false);
     path.fresh = path.leg.course.count > 0 && path.leg.goal + 1 < path.stretches &&
                  path.leg.ripe > at_least * path.leg.duration();
 }
@@ -101,6 +112,7 @@ IntoBoxes halt_harder(const Path& path, const PathOutlook& outlook, const Motion
 
 /// Plans anew from now; where that cannot be, what was planned goes on.
 bool plan_anew(Path& path, std::span<PathPiece> ring) {
+    const bool commanded = path.stale;
     look_back_where_changed(path, ring);
     path.fresh = false;
     MotionState from = state_of(path);
@@ -118,7 +130,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     path.leg = leg;
     path.time = 0;
     note_leg(path, ring);
-    path.stale = path.stale || into == IntoBoxes::late;
+    if (into == IntoBoxes::late) try_later(path, commanded);
     return true;
 }
 
@@ -131,9 +143,25 @@ void go_on(Path& path, std::span<PathPiece> ring) {
         look_ahead(outlook, path.time, path.leg)) {
         path.time = 0;
         note_leg(path, ring);
-    } else {
-        path.stale = stops_short(path, ring);
+    } else if (stops_short(path, ring)) {
+        try_later(path, false);
     }
+}
+
+/// Pieces have come that count now, or what could not be planned may be by now.
+bool is_due(const Path& path) {
+    return path.stale || path.time >= path.again || (path.fresh && path.time >= path.leg.ripe);
+}
+
+/// Where a command is not planned, and nothing is, it stands.
+void look(Path& path, std::span<PathPiece> ring) {
+    const bool commanded = path.stale;
+    path.again = Path::any_time;
+    if (!commanded && path.fresh && path.leg.course.count > 0 && path.time >= path.leg.ripe)
+        return go_on(path, ring);
+    if (plan_anew(path, ring)) return;
+    try_later(path, commanded);
+    path.lost = path.standing() && factor_of(path) > 0;
 }
 
 bool at_end_of_stretch(const Path& path, std::span<PathPiece> ring) {
@@ -144,7 +172,7 @@ bool at_end_of_stretch(const Path& path, std::span<PathPiece> ring) {
 /// The leg is over: on with the next one, at the velocity that was left with.
 void enter_next(Path& path, std::span<PathPiece> ring) {
     const MotionState from{0, path.leg.end_velocity(), 0, 0};
-    path.time -= path.leg.duration();
+    path.time = 0;
     path.stretch = path.leg.goal + 1;
     look_back_where_changed(path, ring);
     const double base = path.leg.end;
@@ -153,7 +181,6 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
     path.leg.goal = path.stretch;
     if (path.stretch == path.stretches) {
         path.first = path.count;
-        path.time = 0;
         return;
     }
     const PathOutlook outlook = outlook_of(path, ring);
@@ -170,6 +197,13 @@ void move_up(Path& path, std::span<const PathPiece> ring, double place) {
         return place >= piece.end() && piece.end() < path.leg.end;
     };
     while (path.first + 1 < path.count && is_left(piece_at(ring, path.first))) ++path.first;
+}
+
+/// The instant of the leg under way at which a piece on its way is entered.
+double time_of_entry(const Path& path, std::span<const PathPiece> ring, std::uint64_t piece) {
+    if (piece >= path.count) return Path::any_time;
+    const double begin = piece_at(ring, piece).begin;
+    return begin < path.leg.end ? path.leg.time_at(begin - path.leg.base) : Path::any_time;
 }
 
 /// Joined but for rounding.
@@ -369,22 +403,35 @@ void Path::clear() {
 }
 
 PathMotion Path::advance(std::span<PathPiece> ring, double dt) {
-    if (finished() || lost) return now(ring);
-    const bool is_ripe = fresh && time + dt >= leg.ripe;
-    if (!stale && is_ripe && leg.course.count > 0) {
-        go_on(*this, ring);
-    } else if ((stale || is_ripe) && !plan_anew(*this, ring)) {
-        stale = true;
-        lost = standing() && factor_of(*this) > 0;
+    advance_to(ring, dt, to_end);
+    return now(ring);
+}
+
+double Path::advance_to(std::span<PathPiece> ring, double dt, std::uint64_t piece) {
+    double elapsed = 0;
+    if (stale && !finished() && !lost) look(*this, ring);
+    while (!finished() && !lost && first < piece) {
+        if (!stale && is_due(*this)) {
+            look(*this, ring);
+            continue;
+        }
+        const double end = leg.duration(), left_at = time_of_entry(*this, ring, piece);
+        const double next = std::min({end, left_at, again, fresh ? leg.ripe : any_time});
+        const double left = dt - elapsed;
+        if (time + left < next || (time >= end && !at_end_of_stretch(*this, ring))) {
+            time += left;
+            elapsed = dt;
+            break;
+        }
+        elapsed = std::min(dt, elapsed + std::max(next - time, 0.0));
+        time = std::max(time, next);
+        if (at_end_of_stretch(*this, ring)) enter_next(*this, ring);
+        if (time >= left_at) first = piece;
+        if (!finished()) move_up(*this, ring, place_of(*this));
     }
-    if (lost) return now(ring);
-    time += dt;
-    while (!finished() && !lost && at_end_of_stretch(*this, ring)) enter_next(*this, ring);
     if (standing()) time = leg.duration();
-    MotionState m = state_of(*this);
-    m.position = place_of(*this, m);
-    if (!finished()) move_up(*this, ring, m.position);
-    return motion_of(*this, ring, m);
+    if (!finished()) move_up(*this, ring, place_of(*this));
+    return elapsed;
 }
 
 PathMotion Path::now(std::span<const PathPiece> ring) const {

@@ -35,7 +35,14 @@ struct PathMotion {
 /// At any instant, whatever is commanded: the velocity along the path is not negative, limits of
 /// path and axes are kept, positions lie on the curves, and the last piece ends exactly at its end
 /// with velocity 0. Override changes the velocity only, not acceleration and jerk.
+///
+/// Where nothing is commanded the motion is the same whatever the instants at which it is looked
+/// at: it is planned anew at instants of its own. Who appends more than the ring holds does so
+/// where pieces are left, and not later: see `advance_to`.
 struct Path {
+    static constexpr std::uint64_t to_end = std::numeric_limits<std::uint64_t>::max();
+    static constexpr double any_time = std::numeric_limits<double>::infinity();
+
     std::uint64_t first = 0;      ///< number of the piece under way, counted from 0
     std::uint64_t count = 0;      ///< pieces appended so far
     std::uint64_t stretch = 0;    ///< number of the stretch under way, counted from 0
@@ -43,10 +50,11 @@ struct Path {
     std::uint64_t changed = 0;    ///< the first stretch that has changed since the last look back
     double total = 0;             ///< length of all pieces appended [u]
     double time = 0;              ///< since the leg under way began [s]
+    double again = any_time;      ///< then [s] it is tried to plan anew what could not be planned
     double override = 1;          ///< factor of the velocity, >= 0
     PathLimit braking = no_path_limit;  ///< of a halt
     bool halted = false;
-    bool stale = false;  ///< what was planned is to be planned anew
+    bool stale = false;  ///< what was commanded is to be planned with the next `advance`
     bool fresh = false;  ///< stretches have changed since the leg under way was planned
     bool lost = false;   ///< numbers too many decades apart to be planned: it stands there
     PathLeg leg;         ///< under way
@@ -74,6 +82,10 @@ struct Path {
 
     /// The motion dt >= 0 [s] later.
     PathMotion advance(std::span<PathPiece> ring, double dt);
+
+    /// On by dt >= 0 [s], or less: to the instant at which `piece` is entered, or the path is over.
+    /// How much [s].
+    double advance_to(std::span<PathPiece> ring, double dt, std::uint64_t piece);
 
     /// The motion now.
     PathMotion now(std::span<const PathPiece> ring) const;

@@ -23,4 +23,12 @@ MotionState PathCourse::at(double t) const {
     return phase.after(std::max(0.0, t - phase.begin));
 }
 
+double PathCourse::time_at(double place) const {
+    std::size_t k = 0;
+    while (k + 1 < count && phases[k + 1].start.position <= place) ++k;
+    const PathPhase& phase = phases[k];
+    const double way = place - phase.start.position;
+    return phase.begin + (way > 0 ? time_at_way(phase, end_of(k) - phase.begin, way) : 0);
+}
+
 }  // namespace lineshaft

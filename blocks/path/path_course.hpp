@@ -25,6 +25,9 @@ struct PathCourse {
 
     /// State t seconds after the start; before it that at the start, behind it `end`.
     MotionState at(double t) const;
+
+    /// When it is at a place, which counts from where it begins [s].
+    double time_at(double place) const;
 };
 
 }  // namespace lineshaft

@@ -214,6 +214,22 @@ double way_to(const MotionState& from, double velocity, const PathLimit& box) {
     return ramp.end.position;
 }
 
+double PathLeg::time_at(double way) const {
+    const double lasts = duration();
+    double t = 0;
+    if (course.count > 0) {
+        t = course.time_at(way);
+    } else {
+        std::size_t i = 0;
+        while (i + 1 < plan.count && plan.phases[i + 1].start.position <= way) ++i;
+        const MotionPlan::Phase& phase = plan.phases[i];
+        const double left = way - phase.start.position;
+        t = phase.begin + (left > 0 ? time_at_way(phase.start, phase.duration, left) : 0);
+    }
+    for (double later = 0x1p-52 * lasts; t < lasts && at(t).position < way; later *= 2) t += later;
+    return std::min(t, lasts);
+}
+
 bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base, double factor,
               const PathLimit& halt, PathLeg& out) {
     const PathStretch& first = stretches[stretches.first];

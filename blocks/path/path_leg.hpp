@@ -22,6 +22,10 @@ struct PathLeg {
     double duration() const { return course.count > 0 ? course.duration : plan.duration; }
     double end_velocity() const { return (course.count > 0 ? course.end : plan.end).velocity; }
     MotionState at(double t) const { return course.count > 0 ? course.at(t) : plan.at(t); }
+
+    /// The first instant at which no less than a way [u] is behind it; `duration` where it is
+    /// shorter [s].
+    double time_at(double way) const;
 };
 
 /// The next leg from a state (its position is 0) at `base` within the first of the stretches, with

@@ -13,15 +13,6 @@ namespace {
 /// time in which the distance from standstill grows e-fold.
 constexpr double equal_times = 20, grading = 3;
 
-/// When a course is at a place.
-double time_at(const PathCourse& course, double place) {
-    std::size_t k = 0;
-    while (k + 1 < course.count && course.phases[k + 1].start.position <= place) ++k;
-    const PathPhase& phase = course.phases[k];
-    const double way = place - phase.start.position;
-    return phase.begin + (way > 0 ? time_at_way(phase, course.end_of(k) - phase.begin, way) : 0);
-}
-
 /// How many intervals there are to be until a time.
 double intervals_until(double t, const PathCourse& guess, const MeshWish& wish) {
     const auto folds = [](double time, double rest) {
@@ -95,7 +86,7 @@ SpeedInterval interval_on(const PathPiece& piece, double base, double begin, dou
 bool add_piece(const PathPieces& pieces, std::uint64_t number, const PathCourse& guess,
                const MeshWish& wish, double fineness, double from, double to, PathMesh& out) {
     const PathPiece& piece = pieces[number];
-    const double first = time_at(guess, from), last = time_at(guess, to);
+    const double first = guess.time_at(from), last = guess.time_at(to);
     const double start = intervals_until(first, guess, wish);
     const double per = fineness * mesh_need(piece).intervals / piece.curve.length;
     const auto until = [&](double t) {
@@ -118,7 +109,7 @@ bool add_piece(const PathPieces& pieces, std::uint64_t number, const PathCourse&
         const double end = k == n ? to : guess.at(t).position;
         if (!(end > begin)) return false;
         out.intervals[out.count] = interval_on(piece, wish.base, begin, end, wish.factor);
-        const double v = guess.at(time_at(guess, 0.5 * (begin + end))).velocity;
+        const double v = guess.at(guess.time_at(0.5 * (begin + end))).velocity;
         if (!(v > 0)) return false;
         out.energies[out.count] = 0.5 * v * v;
         ++out.count;

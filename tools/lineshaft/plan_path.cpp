@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "blocks/group/axes_group.hpp"
 #include "blocks/path/path_cubic.hpp"
 #include "runtime/source/input_file.hpp"
 #include "tools/lineshaft/plan_cells.hpp"
@@ -56,6 +57,15 @@ std::optional<PathLimit> limit_of(std::string_view text) {
     return limit;
 }
 
+/// An empty cell is a line.
+std::string read_curve(std::string_view cell, PathPointKind& kind) {
+    const auto found = std::ranges::find(path_point_kind_names, cell);
+    if (!cell.empty() && found == std::end(path_point_kind_names))
+        return fmt::format("the curve '{}' is not line, arc, spline or cubic", cell);
+    if (!cell.empty()) kind = static_cast<PathPointKind>(found - std::begin(path_point_kind_names));
+    return {};
+}
+
 PathLimits limits_of(const std::vector<std::string>& texts) {
     PathLimits limits;
     limits.path = limit_of(texts.front()).value_or(PathLimit{});
@@ -73,18 +83,22 @@ const std::string_view path_help =
     "of a path in the space of the axes, the first one its start. curve is line, arc (through the\n"
     "border), spline (of degree five) or cubic; rows of one number in the column path are one "
     "path.\n"
-    "Numbers may have a unit, the same one in all rows of a column. A row each:\n"
+    "Numbers may have a unit, the same one in all rows of a column. A path with a line that "
+    "cannot\n"
+    "be read is not planned: bad_line. The motion is that of MC_MovePath. A row each:\n"
     "  path,ok,error,points,pieces,length,duration\n"
-    "or with --every one each so many seconds, and where the path ends:\n"
+    "or with --every one each so many seconds, and one at the instant at which the path ends:\n"
     "  path,time,distance,velocity,acceleration,jerk,position1..position6";
 
 void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
     CLI::Option* path =
         sub.add_flag("--path", is_path, "Plan along paths through points; see below");
     CLI::Option* limits =
-        sub.add_option("--limits", options.limits,
-                       "Velocity, acceleration and jerk along the path; the option is repeated for "
-                       "each axis, from the first one on; the last one counts for all further axes")
+        sub.add_option(
+               "--limits", options.limits,
+               "Velocity, acceleration and jerk: the first time along the path, the second "
+               "time those of axis 1, then of axis 2 and so on; the last one counts for all "
+               "further axes")
             ->type_name("V,A,J")
             ->expected(1, static_cast<int>(most_path_axes) + 1)
             ->delimiter('\0')
@@ -117,7 +131,7 @@ PathPlanner::PathPlanner(std::string file, const PathOptions& options)
     : file_(std::move(file)),
       options_(options),
       limits_(limits_of(options.limits)),
-      ring_(look_ahead) {}
+      ring_(AxesGroup::look_ahead) {}
 
 bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) {
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
@@ -136,25 +150,25 @@ bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) 
         return has_header_;
     }
     PathTablePoint point;
-    double name = 1;
+    double name = name_.value_or(1);
     const std::string wrong = too_long
                                   ? fmt::format("the line has {} characters or more", longest_line)
                                   : read_point(text, point, name);
-    if (!wrong.empty()) {
-        mistake(wrong);
-        return true;
-    }
+    if (!wrong.empty()) mistake(wrong);
     if (name_ && *name_ != name) end(rows);
-    if (!name_) {
-        begin(rows);
-        name_ = name;
-        from_ = start_ = point.target();
-    } else {
-        waiting_.push_back(point);
-        if (next_ + cubic_reach < waiting_.size()) lay(rows);
-    }
-    ++points_;
+    take(point, name, !wrong.empty(), rows);
     return true;
+}
+
+/// A path with a line that cannot be read would be another one without it.
+void PathPlanner::take(const PathTablePoint& point, double name, bool is_bad, std::string& rows) {
+    const bool begins = !name_;
+    if (begins) begin(name, point.target());
+    has_bad_line_ = has_bad_line_ || is_bad;
+    if (!is_bad) ++points_;
+    if (begins || has_bad_line_) return;
+    waiting_.push_back(point);
+    if (next_ + cubic_reach < waiting_.size()) lay(rows);
 }
 
 std::string PathPlanner::read_header(std::string_view text) {
@@ -189,37 +203,38 @@ std::string PathPlanner::read_quantity(std::string_view cell, std::size_t column
     return read_number(has_unit ? trimmed(cell.substr(0, blank)) : cell, columns[column], value);
 }
 
+/// Of a line that is wrong, too, which path it is of.
 std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point, double& path) {
     std::array<double, columns.size()> value{};
     value[path_column] = path;
     std::optional rest = text;
     std::size_t count = 0;
+    std::string first_wrong;
     while (const auto cell = next_cell(rest)) {
         const std::size_t column = count < order_.size() ? order_[count] : columns.size();
         ++count;
-        if (column == columns.size()) continue;
-        if (column == curve_column) {
-            const auto found = std::ranges::find(path_point_kind_names, *cell);
-            if (!cell->empty() && found == std::end(path_point_kind_names))
-                return fmt::format("the curve '{}' is not line, arc, spline or cubic", *cell);
-            if (!cell->empty())
-                point.kind = static_cast<PathPointKind>(found - std::begin(path_point_kind_names));
-        } else if (column < first_border || !cell->empty()) {
-            const std::string wrong = read_quantity(*cell, column, value[column]);
-            if (!wrong.empty()) return wrong;
-        }
+        std::string wrong;
+        if (column == curve_column)
+            wrong = read_curve(*cell, point.kind);
+        else if (column < first_border || (column < columns.size() && !cell->empty()))
+            wrong = read_quantity(*cell, column, value[column]);
+        if (first_wrong.empty()) first_wrong = wrong;
     }
+    path = value[path_column];
+    if (!first_wrong.empty()) return first_wrong;
     if (count != order_.size())
         return fmt::format("the line has {} cells instead of {}", count, order_.size());
     const double* const x = value.data() + first_position;
     std::copy(x, x + path_space, point.position.begin());
     std::copy(x + path_space, x + most_path_axes, point.rotary.begin());
     std::copy(x + most_path_axes, x + most_path_axes + path_space, point.border.begin());
-    path = value[path_column];
     return {};
 }
 
-void PathPlanner::begin(std::string&) {
+void PathPlanner::begin(double name, const PathVector& start) {
+    name_ = name;
+    from_ = start_ = start;
+    has_bad_line_ = false;
     path_ = {};
     waiting_.clear();
     next_ = 0;
@@ -228,16 +243,21 @@ void PathPlanner::begin(std::string&) {
     duration_ = 0;
 }
 
-/// The next row that waits; those that count for none behind it are forgotten.
+/// The next row that waits, as soon as there is room for it, as MC_MovePath does; those that count
+/// for none behind it are forgotten.
 void PathPlanner::lay(std::string& rows) {
     const std::size_t k = next_++;
-    if (fault_ != PathFault::none) return;
+    const bool is_spline = waiting_[k].kind >= PathPointKind::spline;
+    const std::uint64_t needed = is_spline ? most_spline_parts : most_transition_parts;
+    if (path_.count + needed + 1 > ring_.size()) run(rows, path_.count + needed + 1 - ring_.size());
+    if (fault_ != PathFault::none || interrupt_requested) return;
     PathRowCurves curves;
     std::size_t count = 0;
-    const PathCurve* const before = path_.count > 0 ? &last_ : nullptr;
+    const PathCurve* const before =
+        path_.count > 0 ? &ring_[(path_.count - 1) % ring_.size()].curve : nullptr;
     fault_ = curves_of({waiting_, start_}, k, from_, before, curves, count);
     if (fault_ == PathFault::no_length) fault_ = PathFault::none, count = 0;
-    for (std::size_t n = 0; n < count && fault_ == PathFault::none; ++n) append(curves[n], rows);
+    for (std::size_t n = 0; n < count && fault_ == PathFault::none; ++n) append(curves[n]);
     from_ = waiting_[k].target();
     if (next_ < 4 * cubic_reach) return;
     const std::size_t forgotten = next_ - cubic_reach - 1;
@@ -246,57 +266,51 @@ void PathPlanner::lay(std::string& rows) {
     next_ -= forgotten;
 }
 
-void PathPlanner::append(const PathCurve& curve, std::string& rows) {
-    while (!path_.lost && path_.count - path_.first + most_spline_parts + 1 > ring_.size() &&
-           !interrupt_requested)
-        run(rows, false);
-    if (path_.lost || interrupt_requested) return;
+void PathPlanner::append(const PathCurve& curve) {
     PathJoint joint;
     joint.distance = PathJoint::any, joint.deviation = options_.deviation;
     fault_ = path_.append(ring_, curve, limits_, joint);
-    last_ = curve;
 }
 
-/// From one instant at which the path may be planned anew to the next.
-double PathPlanner::next_step(bool to_end) const {
-    const double lasts = path_.leg.duration(), left = std::max(lasts - path_.time, 0.0);
-    if (!to_end || path_.stale) return std::min(left, lasts / 64);
-    const double slight = 1e-6 * lasts, until_ripe = path_.leg.ripe - path_.time;
-    if (!path_.fresh || until_ripe >= left) return left;
-    return until_ripe > 2 * slight ? until_ripe - slight : std::min(left, slight);
-}
-
-/// Until there is room for more pieces, or to the end: from sample to sample, or leg to leg.
-void PathPlanner::run(std::string& rows, bool to_end) {
-    const std::uint64_t first = path_.first;
-    while (!path_.finished() && !path_.lost && (to_end || path_.first == first) &&
-           !interrupt_requested) {
-        if (options_.every == 0) {
-            path_.advance(ring_, 0);
-            const double step = next_step(to_end);
-            path_.advance(ring_, step);
-            duration_ += step;
+/// To where a piece is entered, or to the end: from sample to sample.
+void PathPlanner::run(std::string& rows, std::uint64_t piece) {
+    const auto is_there = [&] { return path_.first >= piece || path_.finished(); };
+    while (!is_there() && fault_ == PathFault::none && !interrupt_requested) {
+        const double sample = static_cast<double>(samples_) * options_.every;
+        if (options_.every > 0 && !(duration_ < sample)) {
+            path_.advance_to(ring_, 0, piece);
+            write_sample(sample, rows);
+            ++samples_;
             continue;
         }
-        const PathMotion m = path_.advance(ring_, samples_ == 0 ? 0 : options_.every);
-        rows += fmt::format("{}", name_.value_or(1));
-        append_number(rows, static_cast<double>(samples_++) * options_.every);
-        for (const double x : {m.path.position, m.path.velocity, m.path.acceleration, m.path.jerk})
-            append_number(rows, x);
-        for (const double x : m.position) append_number(rows, x);
-        rows += '\n';
+        const double most = options_.every > 0 ? sample - duration_ : Path::any_time;
+        const double elapsed = path_.advance_to(ring_, most, piece);
+        const bool is_sampled = options_.every > 0 && elapsed == most;
+        duration_ = is_sampled ? sample : duration_ + elapsed;
+        if (path_.lost || !std::isfinite(duration_)) fault_ = PathFault::not_finite;
     }
+}
+
+void PathPlanner::write_sample(double time, std::string& rows) const {
+    const PathMotion m = path_.now(ring_);
+    rows += fmt::format("{}", name_.value_or(1));
+    append_number(rows, time);
+    for (const double x : {m.path.position, m.path.velocity, m.path.acceleration, m.path.jerk})
+        append_number(rows, x);
+    for (const double x : m.position) append_number(rows, x);
+    rows += '\n';
 }
 
 void PathPlanner::end(std::string& rows) {
     if (!name_) return;
-    while (next_ < waiting_.size()) lay(rows);
-    run(rows, true);
-    if (path_.lost) fault_ = PathFault::not_finite;
-    const bool ok = fault_ == PathFault::none;
+    while (next_ < waiting_.size() && !has_bad_line_) lay(rows);
+    if (!has_bad_line_) run(rows, Path::to_end);
+    const bool ok = fault_ == PathFault::none && !has_bad_line_;
+    const std::string_view why = has_bad_line_ ? "bad_line" : text_of(fault_);
+    if (options_.every > 0 && ok && path_.finished() && path_.count > 0)
+        write_sample(duration_, rows);
     if (options_.every == 0) {
-        rows += fmt::format("{},{},{},{},{}", *name_, ok ? 1 : 0, text_of(fault_), points_,
-                            path_.count);
+        rows += fmt::format("{},{},{},{},{}", *name_, ok ? 1 : 0, why, points_, path_.count);
         if (ok) {
             append_number(rows, path_.total);
             append_number(rows, duration_);
@@ -305,7 +319,7 @@ void PathPlanner::end(std::string& rows) {
         }
         rows += '\n';
     } else if (!ok) {
-        mistake(fmt::format("the path {} cannot be planned: {}", *name_, text_of(fault_)));
+        mistake(fmt::format("the path {} cannot be planned: {}", *name_, why));
     }
     name_.reset();
 }

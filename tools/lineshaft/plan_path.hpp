@@ -39,16 +39,15 @@ class PathPlanner {
     bool any_mistake() const { return mistakes_; }
 
   private:
-    static constexpr std::size_t look_ahead = 1024;  ///< pieces
-
     std::string read_header(std::string_view text);
     std::string read_point(std::string_view text, PathTablePoint& point, double& path);
     std::string read_quantity(std::string_view cell, std::size_t column, double& value);
-    void begin(std::string& rows);
+    void take(const PathTablePoint& point, double name, bool is_bad, std::string& rows);
+    void begin(double name, const PathVector& start);
     void lay(std::string& rows);
-    void append(const PathCurve& curve, std::string& rows);
-    void run(std::string& rows, bool to_end);
-    double next_step(bool to_end) const;
+    void append(const PathCurve& curve);
+    void run(std::string& rows, std::uint64_t piece);
+    void write_sample(double time, std::string& rows) const;
     void end(std::string& rows);
     void mistake(const std::string& what);
 
@@ -66,10 +65,10 @@ class PathPlanner {
     std::vector<PathTablePoint> waiting_;  ///< those to come, and those that count for them
     std::size_t next_ = 0;                 ///< the first of those to come
     PathVector start_{}, from_{};
-    PathCurve last_;
     PathFault fault_ = PathFault::none;
+    bool has_bad_line_ = false;  ///< of the path under way
     std::size_t points_ = 0, samples_ = 0;
-    double duration_ = 0;
+    double duration_ = 0;  ///< so far [s]
 };
 
 }  // namespace lineshaft
