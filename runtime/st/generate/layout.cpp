@@ -60,6 +60,10 @@ bool has_block(const Type& type) {
                                         }));
 }
 
+bool waits_for_blocks(const Type& type) {
+    return type.kind == Kind::structure && type.slots == 0 && has_block(type);
+}
+
 /// A slot that says that the routine runs.
 void place_mark(Routine& routine, std::uint32_t& at) {
     if (routine.is_met && !routine.is_function()) routine.mark = at++;
@@ -87,7 +91,7 @@ void forget_places(Writing& w) {
             if (variable.space == Space::frame || variable.space == Space::reference)
                 variable.slot = unplaced;
     for (const Type& type : w.checked.types)
-        if (type.kind == Kind::structure && type.slots == 0 && has_block(type))
+        if (waits_for_blocks(type))
             for (Variable* member : type.members) member->slot = unplaced;
     for (const Routine* routine : w.checked.order)
         ++w.unwritten_parts[routine->owner ? routine->owner : routine];
@@ -115,6 +119,8 @@ void lay_out_members(Writing& w, const Type& list, bool with_blocks) {
 }
 
 void finish_late(Writing& w) {
+    for (const Type& type : w.checked.types)
+        if (waits_for_blocks(type)) slots_of(w, type);
     for (const Writing::Late& late : w.late) {
         const std::uint64_t one = late.member ? late.member->slot : slots_of(w, *late.type);
         if (late.is_stride)

@@ -24,10 +24,10 @@ Slot copied(Writing& w, const Location& from) {
     return made;
 }
 
-/// Where a part of the root is, if that began at slot 0.
-Location path(Writing& w, const Expression& e, const Expression& root) {
-    if (&e == &root) return {Mode::slot, 0};
-    const Location of = path(w, *e.operands[0], root);
+/// Where a part of the root is, if that began at `begin`.
+Location path(Writing& w, const Expression& e, const Expression& root, const Location& begin) {
+    if (&e == &root) return begin;
+    const Location of = path(w, *e.operands[0], root, begin);
     return e.kind == E::member ? part(w, of, *e.variable) : element(w, of, e);
 }
 
@@ -43,10 +43,15 @@ Location packed_path(Writing& w, const Expression& e, const Expression& root, co
     return e.kind == E::member ? packed_member(at, *e.variable) : packed_element(w, at, e);
 }
 
-/// Of an array, at an index that is not known before: the size of an element is asked for in a run.
-bool is_element_in_a_run(const Expression& part, const Expression& root) {
-    return part.kind == E::index && part.operands[0] == &root && part.arguments.size() == 1 &&
-           part.arguments[0].value->kind != E::constant;
+/// How many slots a part of the root is behind it.
+Slot slots_to_part(Writing& w, const Expression& part, const Expression& root) {
+    const Routine* own = w.routine->owner ? w.routine->owner : w.routine;
+    if (is_growing(w, *root.type) && root.type->routine != own)
+        return address_of(w, path(w, part, root, {Mode::address, 0, w.constant_slot(0)}));
+    slots_of(w, *root.type);
+    const Location at = path(w, part, root, {Mode::slot, 0});
+    if (at.mode == Mode::slot) return w.constant_slot(at.slot);
+    return at.slot == 0 ? at.index : w.emit(Op::offset, none, at.index, at.slot);
 }
 
 bool is_in_image(const Variable* variable) {
@@ -60,20 +65,8 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
         const Location whole = locate_through(base, *root.type, dialect);
         return reference_to_packed(w, packed_path(w, part, root, whole));
     }
-    const Routine* own = w.routine->owner ? w.routine->owner : w.routine;
-    const bool is_growing_yet = is_growing(w, *root.type) && root.type->routine != own;
-    if (is_growing_yet && !is_element_in_a_run(part, root)) {
-        w.out.add(code::contains_itself, part.place.mark(),
-                  "this refers to a part of what holds the block that refers to it",
-                  "refer to the block, or pass the part on as VAR_IN_OUT");
-        return base;
-    }
-    if (!is_growing_yet) slots_of(w, *root.type);
-    const Location at = path(w, part, root);
-    if (at.mode == Mode::slot && at.slot == 0) return base;
-    Slot slots = w.constant_slot(at.slot);
-    if (at.mode == Mode::indexed)
-        slots = at.slot == 0 ? at.index : w.emit(Op::offset, none, at.index, at.slot);
+    if (&part == &root) return base;
+    const Slot slots = slots_to_part(w, part, root);
     const Slot bytes = w.emit(Op::bytes_of_slots, none, slots, shape_number(w, *root.type));
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::move_reference, made, base, bytes);
@@ -326,7 +319,8 @@ Slot reference_to(Writing& w, const Expression& place) {
 }
 
 Location locate_target(Writing& w, const Expression& e) {
-    slots_of(w, *e.type);  // lays it out: nothing else of its type may be there yet
+    if (!is_growing(w, *e.type))
+        slots_of(w, *e.type);  // lays it out: nothing else of its type may be there yet
     const Expression& pointer = *e.operands[0];
     if (pointer.kind == E::refer && is_view(pointer)) {
         const Dialect& dialect = e.place.dialect();
