@@ -1344,6 +1344,18 @@ def check_local_types():
     run("run", "local.yaml", "--quiet")
 
 
+def check_unused_local_types():
+    """Types that a program of B&R has for itself, and that nothing uses, are there where it has a mistake."""
+    write("Unused/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          '<File>Main.st</File><File Private="true">Types.typ</File></Files></Program>\n')
+    write("Unused/Logical/P/Types.typ", "TYPE\n\nEND_TYPE\n")
+    write("Unused/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tfoo := 3;\nEND_PROGRAM\n")
+    write("Unused/Physical/C/P/Cpu.sw", '<SwConfiguration xmlns="http://br-automation.co.at/AS/SwConfiguration"><TaskClass Name="Cyclic#1">'
+          '<Task Name="P" Source="P.prg" Memory="UserROM" Language="IEC" /></TaskClass></SwConfiguration>\n')
+    told = run("check", "Unused", code=2)
+    assert "Main.st:2:2: error[L0904]: 'foo' is not declared" in told and "namespace" not in told, told
+
+
 def check_awl():
     write("old.awl", "U E 0.0;\n")
     assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
@@ -1924,6 +1936,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_memory_bytes()
     check_softmotion()
     check_local_types()
+    check_unused_local_types()
     check_awl()
     check_apax()
     check_packages_beside()
