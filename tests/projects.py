@@ -1356,6 +1356,29 @@ def check_unused_local_types():
     assert "Main.st:2:2: error[L0904]: 'foo' is not declared" in told and "namespace" not in told, told
 
 
+def check_actions_of_libraries():
+    """An ACTION of a library of B&R is of the block in its folder that runs it, or runs what does; a file of no language is beside."""
+    for name, step in (("Up", 1), ("Down", -1)):
+        write(f"Steps/Logical/Libraries/{name}/IEC.lby", '<Library SubType="IEC" xmlns="http://br-automation.co.at/AS/Library"><Files>'
+              f"<File>{name}.fun</File><File>ACT_Add.st</File><File>{name}.st</File><File>ACT_Step.st</File></Files></Library>\n")
+        write(f"Steps/Logical/Libraries/{name}/{name}.fun", f"FUNCTION_BLOCK {name}\n\tVAR_INPUT\n\t\tRun : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tN : DINT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n")
+        write(f"Steps/Logical/Libraries/{name}/{name}.st", f"FUNCTION_BLOCK {name}\n\tIF Run THEN\n\t\t{name}Step;\n\tEND_IF\nEND_FUNCTION_BLOCK\n")
+        write(f"Steps/Logical/Libraries/{name}/ACT_Step.st", f"ACTION {name}Step:\n\t{name}Add;\nEND_ACTION\n")
+        write(f"Steps/Logical/Libraries/{name}/ACT_Add.st", f"ACTION {name}Add:\n\tN := N + {step};\nEND_ACTION\n")
+    write("Steps/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File><File>revision.txt</File></Files></Program>\n")
+    write("Steps/Logical/P/revision.txt", "V1.0 first\n")
+    write("Steps/Logical/P/Variables.var", "VAR\n\tup : Up;\n\tdown : Down;\nEND_VAR\n")
+    write("Steps/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tup(Run := TRUE);\n\tdown(Run := TRUE);\nEND_PROGRAM\n")
+    run("check", "Steps")
+    run("new", "steps", "--from", "Steps")
+    write("steps.yaml", (work / "steps.yaml").read_text() + "expect:\n  - {at: 95 ms, P.up.N: 10}\n  - {at: 95 ms, P.down.N: -10}\n")
+    run("run", "steps.yaml", "--quiet")
+    listed = work / "Steps/Logical/P/IEC.prg"
+    listed.write_text(listed.read_text().replace("revision.txt", "picture.ab"))
+    assert "'picture.ab' is neither Structured Text nor a ladder" in run("check", "Steps", code=2)
+
+
 def check_awl():
     write("old.awl", "U E 0.0;\n")
     assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
@@ -1937,6 +1960,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_softmotion()
     check_local_types()
     check_unused_local_types()
+    check_actions_of_libraries()
     check_awl()
     check_apax()
     check_packages_beside()
