@@ -1356,6 +1356,34 @@ def check_unused_local_types():
     assert "Main.st:2:2: error[L0904]: 'foo' is not declared" in told and "namespace" not in told, told
 
 
+NUMBERS_OF_BR = """TEST 'a BOOL is 0 or 1 beside a number'
+VAR b : BOOL := TRUE; u : UDINT := 7; d : DINT := -7; r : REAL := 2.5; n : USINT; END_VAR
+ASSERT_EQ(3 + u * b, 10); ASSERT_EQ(d - b, -8); ASSERT_EQ(r * b, 2.5); ASSERT_TRUE(b > n); ASSERT_FALSE(n = b);
+n := b + b; ASSERT_EQ(n, 2);
+END_TEST
+TEST 'signs are mixed beside conversions, too'
+VAR u : UDINT := 3; d : DINT := 2; b : BOOL := TRUE; x, y : UDINT; END_VAR
+x := u + 2 * d; y := u + 2 * BOOL_TO_DINT(b);
+ASSERT_EQ(x, 7); ASSERT_EQ(y, 5);
+END_TEST
+TEST 'a text over lines may have semicolons'
+VAR s, t : STRING[80]; END_VAR
+s := '<style>
+p {color:red;margin:0}
+</style>'; t := 'x';
+ASSERT_EQ(LEN(s), 39); ASSERT_EQ(t, 'x');
+END_TEST
+"""
+
+
+def check_numbers_of_br():
+    path = write("br/numbers_test.st", NUMBERS_OF_BR)
+    told = run("test", path, "--source-dialect", "automation_studio")
+    assert "3 of 3 passed" in told, told
+    path.write_text(NUMBERS_OF_BR.replace("t := 'x'", "t := 'x"))
+    assert "numbers_test.st:15:17: error[L0901]: the text does not end" in run("test", path, "--source-dialect", "automation_studio", code=1)
+
+
 def check_actions_of_libraries():
     """An ACTION of a library of B&R is of the block in its folder that runs it, or runs what does; a file of no language is beside."""
     for name, step in (("Up", 1), ("Down", -1)):
@@ -1960,6 +1988,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_softmotion()
     check_local_types()
     check_unused_local_types()
+    check_numbers_of_br()
     check_actions_of_libraries()
     check_awl()
     check_apax()

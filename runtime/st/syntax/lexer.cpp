@@ -352,7 +352,8 @@ class Lexer {
     }
 
     /// To its closing quote, to the end of its line where there is none. CODESYS lets a text go on
-    /// in the next lines; one that only lacks its quote has a ';' before the next one.
+    /// in the next lines; one that only lacks its quote has a ';' before the next one, in B&R's,
+    /// whose texts are pages of HTML, at the end of its first line.
     void pass_text() {
         const auto is_pair = [&] {
             return peek() == '$' ? peek(1) != '\n' && peek(1) != '\0' : at("''");
@@ -363,7 +364,10 @@ class Lexer {
         };
         pass_until("'\n");
         const std::size_t end_of_line = at_;
-        if (peek() == '\n') pass_until("';");
+        const std::size_t last = text_.find_last_not_of(" \t\r", at_ - 1);
+        const bool may_have_semicolons =
+            tokens_.source->dialect.vendor == Vendor::automation_studio && text_[last] != ';';
+        if (peek() == '\n') pass_until(may_have_semicolons ? "'" : "';");
         const std::size_t behind = text_.find_first_not_of(" \t", at_ + 1);
         const bool is_whole =
             peek() == '\'' && behind != text_.npos &&
