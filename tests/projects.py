@@ -1384,6 +1384,20 @@ def check_numbers_of_br():
     assert "numbers_test.st:15:17: error[L0901]: the text does not end" in run("test", path, "--source-dialect", "automation_studio", code=1)
 
 
+def check_types_by_capitals():
+    """To B&R `INV_typ` and `Inv_typ` are two types."""
+    write("Capitals/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Main.st</File>'
+          '<File Private="true">Types.typ</File><File Private="true">Variables.var</File></Files></Program>\n')
+    write("Capitals/Logical/P/Types.typ", "TYPE\n\tINV_typ : STRUCT\n\t\tInv : Inv_typ;\n\t\tReset : BOOL;\n\tEND_STRUCT;\n\tInv_typ : STRUCT\n\t\tTest : USINT := 4;\n"
+          "\tEND_STRUCT;\n\tMODE : (OFF, ON);\n\tMode : (SLOW, FAST);\nEND_TYPE\n")
+    write("Capitals/Logical/P/Variables.var", "VAR\n\ti : INV_typ;\n\tone : Inv_typ;\n\tmode : Mode := FAST;\n\tis_fast : BOOL;\n\tn : USINT;\nEND_VAR\n")
+    write("Capitals/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tn := i.Inv.Test + one.Test;\n\ti.Inv := one;\n\tis_fast := mode = FAST;\nEND_PROGRAM\n")
+    assert run("check", "Capitals").splitlines()[0] == "ok  Capitals"
+    run("new", "capitals", "--from", "Capitals")
+    write("capitals.yaml", (work / "capitals.yaml").read_text() + "expect:\n  - {at: end, P.n: 8}\n  - {at: end, P.is_fast: true}\n")
+    run("run", "capitals.yaml", "--quiet")
+
+
 def check_actions_of_libraries():
     """An ACTION of a library of B&R is of the block in its folder that runs it, or runs what does; a file of no language is beside."""
     for name, step in (("Up", 1), ("Down", -1)):
@@ -1989,6 +2003,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_local_types()
     check_unused_local_types()
     check_numbers_of_br()
+    check_types_by_capitals()
     check_actions_of_libraries()
     check_awl()
     check_apax()
