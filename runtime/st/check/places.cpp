@@ -37,10 +37,18 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
     return found;
 }
 
+/// Its members; of a timer and its like the pins alone, which are all that the standard has.
+std::vector<Variable*> told_members(const Type& type) {
+    std::vector<Variable*> members =
+        type.kind == Kind::block ? all_variables(*type.routine) : type.members;
+    if (type.kind == Kind::standard && !type.is_object())
+        std::erase_if(members, [](const Variable* m) { return m->section == Section::local; });
+    return members;
+}
+
 /// `type` has no member `name`: nothing, and what is there instead is said.
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
-    std::vector<std::string> names =
-        names_of(type.kind == Kind::block ? all_variables(*type.routine) : type.members);
+    std::vector<std::string> names = names_of(told_members(type));
     if (lacks_base(type)) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
