@@ -89,6 +89,13 @@ const Type* use_only_one(Checking& c, Expression*& e) {
     return e->type;
 }
 
+/// `axis.Modulo.Enable` of Siemens, whose `Modulo` alone is a field of the axis. Null: it is none.
+Routine* part_behind_field(Checking& c, const Expression& e) {
+    const Expression& of = *e.operands[0];
+    if (of.kind != E::member || !of.operands[0]->type) return nullptr;
+    return find_part(c, *of.operands[0]->type, fmt::format("{}.{}", of.token.text, e.token.text));
+}
+
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
@@ -105,6 +112,10 @@ const Type* check_member(Checking& c, Expression*& e) {
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);
+    if (Routine* part = part_behind_field(c, *e)) {
+        e->operands[0] = e->operands[0]->operands[0];
+        return check_part(c, e, *part);
+    }
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
     if (type->kind == Kind::handle) {
         type = object_type(c, *type);
