@@ -89,6 +89,13 @@ const Type* use_only_one(Checking& c, Expression*& e) {
     return e->type;
 }
 
+/// The AXIS_REF itself, which became the axis for one of its fields.
+Expression* without_conversion(Expression* axis) {
+    const bool is_made =
+        axis->kind == E::converted && axis->operands[0]->type->kind == Kind::handle;
+    return is_made ? axis->operands[0] : axis;
+}
+
 /// `axis.Modulo.Enable` of Siemens, whose `Modulo` alone is a field of the axis. Null: it is none.
 Routine* part_behind_field(Checking& c, const Expression& e) {
     const Expression& of = *e.operands[0];
@@ -113,7 +120,7 @@ const Type* check_member(Checking& c, Expression*& e) {
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);
     if (Routine* part = part_behind_field(c, *e)) {
-        e->operands[0] = e->operands[0]->operands[0];
+        e->operands[0] = without_conversion(e->operands[0]->operands[0]);
         return check_part(c, e, *part);
     }
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
