@@ -1344,6 +1344,83 @@ def check_local_types():
     run("run", "local.yaml", "--quiet")
 
 
+def check_unused_local_types():
+    """Types that a program of B&R has for itself, and that nothing uses, are there where it has a mistake."""
+    write("Unused/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          '<File>Main.st</File><File Private="true">Types.typ</File></Files></Program>\n')
+    write("Unused/Logical/P/Types.typ", "TYPE\n\nEND_TYPE\n")
+    write("Unused/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tfoo := 3;\nEND_PROGRAM\n")
+    write("Unused/Physical/C/P/Cpu.sw", '<SwConfiguration xmlns="http://br-automation.co.at/AS/SwConfiguration"><TaskClass Name="Cyclic#1">'
+          '<Task Name="P" Source="P.prg" Memory="UserROM" Language="IEC" /></TaskClass></SwConfiguration>\n')
+    told = run("check", "Unused", code=2)
+    assert "Main.st:2:2: error[L0904]: 'foo' is not declared" in told and "namespace" not in told, told
+
+
+NUMBERS_OF_BR = """TEST 'a BOOL is 0 or 1 beside a number'
+VAR b : BOOL := TRUE; u : UDINT := 7; d : DINT := -7; r : REAL := 2.5; n : USINT; END_VAR
+ASSERT_EQ(3 + u * b, 10); ASSERT_EQ(d - b, -8); ASSERT_EQ(r * b, 2.5); ASSERT_TRUE(b > n); ASSERT_FALSE(n = b);
+n := b + b; ASSERT_EQ(n, 2);
+END_TEST
+TEST 'signs are mixed beside conversions, too'
+VAR u : UDINT := 3; d : DINT := 2; b : BOOL := TRUE; x, y : UDINT; END_VAR
+x := u + 2 * d; y := u + 2 * BOOL_TO_DINT(b);
+ASSERT_EQ(x, 7); ASSERT_EQ(y, 5);
+END_TEST
+TEST 'a text over lines may have semicolons'
+VAR s, t : STRING[80]; END_VAR
+s := '<style>
+p {color:red;margin:0}
+</style>'; t := 'x';
+ASSERT_EQ(LEN(s), 39); ASSERT_EQ(t, 'x');
+END_TEST
+"""
+
+
+def check_numbers_of_br():
+    path = write("br/numbers_test.st", NUMBERS_OF_BR)
+    told = run("test", path, "--source-dialect", "automation_studio")
+    assert "3 of 3 passed" in told, told
+    path.write_text(NUMBERS_OF_BR.replace("t := 'x'", "t := 'x"))
+    assert "numbers_test.st:15:17: error[L0901]: the text does not end" in run("test", path, "--source-dialect", "automation_studio", code=1)
+
+
+def check_types_by_capitals():
+    """To B&R `INV_typ` and `Inv_typ` are two types."""
+    write("Capitals/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files><File>Main.st</File>'
+          '<File Private="true">Types.typ</File><File Private="true">Variables.var</File></Files></Program>\n')
+    write("Capitals/Logical/P/Types.typ", "TYPE\n\tINV_typ : STRUCT\n\t\tInv : Inv_typ;\n\t\tReset : BOOL;\n\tEND_STRUCT;\n\tInv_typ : STRUCT\n\t\tTest : USINT := 4;\n"
+          "\tEND_STRUCT;\n\tMODE : (OFF, ON);\n\tMode : (SLOW, FAST);\nEND_TYPE\n")
+    write("Capitals/Logical/P/Variables.var", "VAR\n\ti : INV_typ;\n\tone : Inv_typ;\n\tmode : Mode := FAST;\n\tis_fast : BOOL;\n\tn : USINT;\nEND_VAR\n")
+    write("Capitals/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tn := i.Inv.Test + one.Test;\n\ti.Inv := one;\n\tis_fast := mode = FAST;\nEND_PROGRAM\n")
+    assert run("check", "Capitals").splitlines()[0] == "ok  Capitals"
+    run("new", "capitals", "--from", "Capitals")
+    write("capitals.yaml", (work / "capitals.yaml").read_text() + "expect:\n  - {at: end, P.n: 8}\n  - {at: end, P.is_fast: true}\n")
+    run("run", "capitals.yaml", "--quiet")
+
+
+def check_actions_of_libraries():
+    """An ACTION of a library of B&R is of the block in its folder that runs it, or runs what does; a file of no language is beside."""
+    for name, step in (("Up", 1), ("Down", -1)):
+        write(f"Steps/Logical/Libraries/{name}/IEC.lby", '<Library SubType="IEC" xmlns="http://br-automation.co.at/AS/Library"><Files>'
+              f"<File>{name}.fun</File><File>ACT_Add.st</File><File>{name}.st</File><File>ACT_Step.st</File></Files></Library>\n")
+        write(f"Steps/Logical/Libraries/{name}/{name}.fun", f"FUNCTION_BLOCK {name}\n\tVAR_INPUT\n\t\tRun : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tN : DINT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n")
+        write(f"Steps/Logical/Libraries/{name}/{name}.st", f"FUNCTION_BLOCK {name}\n\tIF Run THEN\n\t\t{name}Step;\n\tEND_IF\nEND_FUNCTION_BLOCK\n")
+        write(f"Steps/Logical/Libraries/{name}/ACT_Step.st", f"ACTION {name}Step:\n\t{name}Add;\nEND_ACTION\n")
+        write(f"Steps/Logical/Libraries/{name}/ACT_Add.st", f"ACTION {name}Add:\n\tN := N + {step};\nEND_ACTION\n")
+    write("Steps/Logical/P/IEC.prg", '<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File><File>revision.txt</File></Files></Program>\n")
+    write("Steps/Logical/P/revision.txt", "V1.0 first\n")
+    write("Steps/Logical/P/Variables.var", "VAR\n\tup : Up;\n\tdown : Down;\nEND_VAR\n")
+    write("Steps/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tup(Run := TRUE);\n\tdown(Run := TRUE);\nEND_PROGRAM\n")
+    run("check", "Steps")
+    run("new", "steps", "--from", "Steps")
+    write("steps.yaml", (work / "steps.yaml").read_text() + "expect:\n  - {at: 95 ms, P.up.N: 10}\n  - {at: 95 ms, P.down.N: -10}\n")
+    run("run", "steps.yaml", "--quiet")
+    listed = work / "Steps/Logical/P/IEC.prg"
+    listed.write_text(listed.read_text().replace("revision.txt", "picture.ab"))
+    assert "'picture.ab' is neither Structured Text nor a ladder" in run("check", "Steps", code=2)
+
+
 def check_awl():
     write("old.awl", "U E 0.0;\n")
     assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
@@ -1373,6 +1450,14 @@ def check_apax():
     write("package/src/main.st", "PROGRAM Main\nVAR c : Counter; END_VAR\nc();\nEND_PROGRAM\n")
     run("check", "package")
     run("new", "of_package", "--from", "package")
+    write("named/apax.yml", "name: named\n")
+    write("named/src/main.st", "TYPE\nMachineState : (Off, Run) := Run;\nEND_TYPE\nPROGRAM Main\nVAR_EXTERNAL machineState : MachineState; END_VAR\n"
+          "VAR is_run : BOOL; cam : REF_TO TO_CamBase; encoder : TO_ExternalEncoder; axis : REF_TO TO_SynchronousAxis; turns : BOOL; END_VAR\n"
+          "is_run := machineState = MachineState#Run;\nIF axis <> NULL THEN turns := axis^.Modulo.Enable; END_IF;\nEND_PROGRAM\n"
+          "CONFIGURATION C\nTASK T1 (Interval := T#10ms, Priority := 1);\nPROGRAM P1 WITH T1 : Main;\nVAR_GLOBAL machineState : MachineState; END_VAR\nEND_CONFIGURATION\n")
+    run("new", "named_state", "--from", "named")
+    write("named_state.yaml", (work / "named_state.yaml").read_text() + "expect:\n  - {at: end, Main.is_run: true}\n")
+    run("run", "named_state.yaml", "--quiet")
 
 
 def check_packages_beside():
@@ -1924,6 +2009,10 @@ with tempfile.TemporaryDirectory() as temporary:
     check_memory_bytes()
     check_softmotion()
     check_local_types()
+    check_unused_local_types()
+    check_numbers_of_br()
+    check_types_by_capitals()
+    check_actions_of_libraries()
     check_awl()
     check_apax()
     check_packages_beside()

@@ -4,7 +4,7 @@ namespace lineshaft {
 
 // The bits of StatusWord and ErrorWord: Siemens, S7-1500 Motion Control, tags of the positioning
 // and synchronous axis. A position is reached at once, so Done and Standstill come together. No
-// part may have the name of a field: Siemens' Modulo is not here.
+// part may have the name of a field: of Siemens' Modulo there are its parts.
 const std::string_view Axis::structured_text = R"(
 FUNCTION "AXIS_REF.ActualPosition" : LREAL
 VAR_INPUT axis : AXIS_REF; END_VAR
@@ -25,12 +25,15 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.VelocitySetpoint" := axis.velocity;
 END_FUNCTION
 
-TYPE "AXIS_REF.Positioning" : STRUCT FollowingError : LREAL; END_STRUCT END_TYPE
+TYPE "AXIS_REF.Positioning" : STRUCT Distance, FollowingError : LREAL; END_STRUCT END_TYPE
 
 FUNCTION "AXIS_REF.StatusPositioning" : "AXIS_REF.Positioning"
 VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.StatusPositioning".FollowingError :=
         SEL(axis.has_drive, 0.0, axis.position - axis.actual_position);
+    "AXIS_REF.StatusPositioning".Distance :=
+        SEL(axis.state = discrete_motion, 0.0,
+            axis.goal - (axis.position + axis.turns * axis.period));
 END_FUNCTION
 
 FUNCTION "AXIS_REF.StatusWord" : DWORD
@@ -81,11 +84,26 @@ VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.WarningWord" := 0;
 END_FUNCTION
 
-TYPE "AXIS_REF.HomingOf" : STRUCT HomePosition : LREAL; END_STRUCT END_TYPE
+TYPE "AXIS_REF.HomingOf" : STRUCT HomePosition, ReferencingVelocity : LREAL; END_STRUCT END_TYPE
 
 FUNCTION "AXIS_REF.Homing" : "AXIS_REF.HomingOf"
 VAR_INPUT axis : AXIS_REF; END_VAR
     "AXIS_REF.Homing".HomePosition := 0.0;
+END_FUNCTION
+
+FUNCTION "AXIS_REF.Modulo.Enable" : BOOL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Modulo.Enable" := axis.modulo;
+END_FUNCTION
+
+FUNCTION "AXIS_REF.Modulo.Length" : LREAL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Modulo.Length" := axis.period;
+END_FUNCTION
+
+FUNCTION "AXIS_REF.Modulo.StartValue" : LREAL
+VAR_INPUT axis : AXIS_REF; END_VAR
+    "AXIS_REF.Modulo.StartValue" := 0.0;
 END_FUNCTION
 
 TYPE "AXIS_REF.Overrides" : STRUCT Velocity : LREAL; END_STRUCT END_TYPE

@@ -21,6 +21,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view mapp_form = ".var";
 
+/// Of files with statements that are not read; any other, a list of revisions, says nothing of what
+/// runs.
+constexpr std::string_view unread_languages[] = {".ab",  ".as",  ".c",  ".cfc",
+                                                 ".cpp", ".fbd", ".il", ".sfc"};
+
 std::string beginning_of(const fs::path& file) {
     std::string start(4096, '\0');
     std::ifstream stream(file, std::ios::binary);
@@ -103,7 +108,7 @@ class IecProgram {
         if (ending == ".uam") return;  // which methods OPC UA sees
         if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
-            if (!is_structured_text(named)) return refuse(mark, named);
+            if (!is_structured_text(named)) return refuse(mark, named, ending);
             const auto path = to_.resolve(path_of(named), mark, mistakes_);
             const bool is_local = list_.plain(file.attribute("Private")) == "true";
             if (!path) return;
@@ -188,7 +193,8 @@ class IecProgram {
         }
     }
 
-    void refuse(const Mark& mark, const std::string& named) {
+    void refuse(const Mark& mark, const std::string& named, const std::string& ending) {
+        if (std::ranges::find(unread_languages, ending) == std::end(unread_languages)) return;
         mistakes_.add(
             code::not_supported, mark,
             fmt::format("'{}' is neither Structured Text nor a ladder, and nothing else is "

@@ -16,12 +16,13 @@ Type& global_variables(Checking& c) {
     return const_cast<Type&>(*c.checked.globals.front().type);
 }
 
-/// `Trace : Trace;`, where CODESYS tells by the place which is meant; before a PROGRAM the variable
-/// is.
+/// `Trace : Trace;`, where CODESYS tells by the place which is meant, as SIMATIC AX does; before a
+/// PROGRAM the variable is.
 bool is_beside_a_type(Checking& c, const Token& name) {
     const Dialect& dialect = name.place.dialect();
-    if (!(dialect.is_loose || dialect.capitals_count) || c.globals.contains(name.text))
-        return false;
+    if (c.globals.contains(name.text)) return false;
+    if (&dialect == &iec || &dialect == &simatic_ax) return c.users.types.contains(name.text);
+    if (!dialect.is_loose && !dialect.capitals_count) return false;
     const Routine* block = find_in(c.users.routines, name.text);
     const bool is_type = block && block->pou->kind == PouKind::function_block;
     const bool is_program = block && block->pou->kind == PouKind::program && dialect.is_loose;

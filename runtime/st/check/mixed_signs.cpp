@@ -21,10 +21,15 @@ bool is_of_its_arguments(const Expression& e) {
            (e.standard->typing == Typing::common || e.standard->typing == Typing::chosen);
 }
 
-/// False: there is something else in it.
+bool is_integer(const Expression& e) {
+    return e.type->kind == Kind::integer || e.type->kind == Kind::any_integer;
+}
+
+/// False: there is something else in it. What was no integer counts as what it became.
 bool add_reckoned(Reckoned& to, const Expression& e) {
     if (is_constant(e)) return true;
-    if (e.kind == E::converted) return add_reckoned(to, *e.operands[0]);
+    if (e.kind == E::converted && is_integer(*e.operands[0]))
+        return add_reckoned(to, *e.operands[0]);
     if (is_of_its_arguments(e)) {
         const auto first = e.arguments.begin() + (e.standard->typing == Typing::chosen);
         return std::all_of(first, e.arguments.end(),

@@ -93,13 +93,16 @@ void give_open_array(Checking& c, const Argument& argument, Variable& array,
         first = make_element(c, first, type->lower);
         type = type->element;
     }
-    if (values.size() != bounds.size() || !type || !same_type(*type, *open.element))
+    const bool has_dimensions = values.size() == bounds.size() && type;
+    if (!has_dimensions || !same_type(*type, *open.element))
         return (void)c.fail(
             code::type_does_not_fit, given->place,
             fmt::format("'{}' is {}, and {} is given", array.text, describe(open),
                         describe(*given->type)),
-            fmt::format("give a variable that is an array of {}",
-                        open.dimensions == 1 ? "one dimension" : "as many dimensions"));
+            has_dimensions && type->kind != Kind::array
+                ? fmt::format("give an array whose elements are {}", describe(*open.element))
+                : fmt::format("give a variable that is an array of {}",
+                              open.dimensions == 1 ? "one dimension" : "as many dimensions"));
     if (is_passed_on)
         first = make_converted(c, given, open);
     else if (!check(c, first) || !refer(c, first, open))

@@ -86,6 +86,18 @@ void take_numbers(Checking& c, Expression& e, bool always) {
             enumeration_becomes_number(c, e.operands[i]);
 }
 
+/// Of B&R a BOOL is 0 or 1 beside a number, and to what reckons.
+void take_truths(Checking& c, Expression& e, bool always) {
+    for (const int i : {0, 1}) {
+        const Type& other = e.operands[1 - i]->type->plain();
+        const bool counts = e.place.dialect().bool_is_number &&
+                            e.operands[i]->type->kind == Kind::boolean &&
+                            (always || (other.is_number() && !other.is_any()));
+        if (counts)
+            convert(c, e.operands[i], other.kind == Kind::integer ? other : integer_type(8, false));
+    }
+}
+
 /// How many numbers and texts there are in it.
 std::uint64_t count_parts(const Type& type) {
     if (type.kind == Kind::array) return type.count() * count_parts(*type.element);
@@ -129,6 +141,7 @@ bool compares_parts(const Expression& e) {
 
 const Type* check_comparison(Checking& c, Expression*& e) {
     take_numbers(c, *e, e->op != Word::equal && e->op != Word::unequal);
+    take_truths(c, *e, false);
     unite_texts(c, e->operands[0], e->operands[1]);
     const auto is_kind = [&](Kind kind) {
         return std::ranges::any_of(e->operands,
@@ -184,6 +197,7 @@ const Type* check_arithmetic(Checking& c, Expression*& e, const Type* expected) 
     const Type &a = *e->operands[0]->type, &b = *e->operands[1]->type;
     if (a.is_time() || b.is_time()) return check_time_arithmetic(c, e);
     reinterpret(c, *e, Kind::bits, expected);
+    take_truths(c, *e, true);
     for (const Expression* operand : e->operands) {
         const Type& type = *operand->type;
         if (type.is_number() || type.is_any()) continue;

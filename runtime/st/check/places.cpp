@@ -37,10 +37,18 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
     return found;
 }
 
+/// Its members; of a timer and its like the pins alone, which are all that the standard has.
+std::vector<Variable*> told_members(const Type& type) {
+    std::vector<Variable*> members =
+        type.kind == Kind::block ? all_variables(*type.routine) : type.members;
+    if (type.kind == Kind::standard && !type.is_object())
+        std::erase_if(members, [](const Variable* m) { return m->section == Section::local; });
+    return members;
+}
+
 /// `type` has no member `name`: nothing, and what is there instead is said.
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
-    std::vector<std::string> names =
-        names_of(type.kind == Kind::block ? all_variables(*type.routine) : type.members);
+    std::vector<std::string> names = names_of(told_members(type));
     if (lacks_base(type)) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
@@ -81,6 +89,20 @@ const Type* use_only_one(Checking& c, Expression*& e) {
     return e->type;
 }
 
+/// The AXIS_REF itself, which became the axis for one of its fields.
+Expression* without_conversion(Expression* axis) {
+    const bool is_made =
+        axis->kind == E::converted && axis->operands[0]->type->kind == Kind::handle;
+    return is_made ? axis->operands[0] : axis;
+}
+
+/// `axis.Modulo.Enable` of Siemens, whose `Modulo` alone is a field of the axis. Null: it is none.
+Routine* part_behind_field(Checking& c, const Expression& e) {
+    const Expression& of = *e.operands[0];
+    if (of.kind != E::member || !of.operands[0]->type) return nullptr;
+    return find_part(c, *of.operands[0]->type, fmt::format("{}.{}", of.token.text, e.token.text));
+}
+
 }  // namespace
 
 const Type* check_member(Checking& c, Expression*& e) {
@@ -97,6 +119,10 @@ const Type* check_member(Checking& c, Expression*& e) {
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (Routine* part = find_part(c, *type, e->token.text)) return check_part(c, e, *part);
+    if (Routine* part = part_behind_field(c, *e)) {
+        e->operands[0] = without_conversion(e->operands[0]->operands[0]);
+        return check_part(c, e, *part);
+    }
     if (Routine* getter = find_accessor(c, *e, Accessor::get)) return check_getter(c, e, *getter);
     if (type->kind == Kind::handle) {
         type = object_type(c, *type);

@@ -167,10 +167,37 @@ void become_named_values(Type& type, const Type& base) {
     type.kind = base.kind;
     type.bits = base.bits;
     type.is_signed = base.is_signed;
+    type.counts_ns = base.counts_ns;
     type.base = &base;
     type.has_numbers = type.is_unchecked = false;
     type.has_named_values = true;
     type.initial.integer = type.numbers.front();
+}
+
+/// `LTIME (short := LT#3s)` of SIMATIC AX.
+const Type* resolve_named_values(Checking& c, const TypeText& text, const Type& base) {
+    Type& type = c.make_type(Kind::enumeration, "enumeration");
+    type.slots = 1;
+    type.is_unnamed = true;
+    NameMap<Place> names;
+    for (const Argument& value : text.values) {
+        Expression* given = value.value;
+        if (!check(c, given, &base) || !coerce(c, given, base)) return nullptr;
+        if (!is_constant(*given))
+            return c.fail(code::not_a_constant, given->place, "a named value is a constant");
+        if (!is_new_name(c, value.name, names)) continue;
+        type.values.emplace_back(value.name.text);
+        type.numbers.push_back(static_cast<std::int64_t>(given->constant.integer));
+    }
+    become_named_values(type, base.plain());
+    return &type;
+}
+
+bool names_values(const TypeText& text, const Type& base) {
+    const bool is_named_first = text.name.place.begin == text.place.begin;
+    const auto has_both = [](const Argument& a) { return a.is_named() && a.value; };
+    return (base.is_real() || base.kind == Kind::time) && is_named_first &&
+           !text.place.dialect().is_loose && std::ranges::all_of(text.values, has_both);
 }
 
 /// A block's name with values is the block, with arguments of its FB_init.
@@ -179,6 +206,13 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     const Type* base = has_base ? resolve_name(c, text.name) : &int_type;
     const bool has_none = text.values.empty() && base && base->is_instance();  // `edge : R_TRIG()`
     if (!base || base->kind == Kind::block || has_none) return base;
+    if (names_values(text, *base)) {
+        if (base->is_real())
+            return c.fail(code::not_supported, text.place,
+                          fmt::format("named values of {} are not supported", base->name),
+                          "declare constants: VAR_GLOBAL CONSTANT name : LREAL := 1.5; END_VAR");
+        return resolve_named_values(c, text, *base);
+    }
     if (base->kind != Kind::integer && base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");

@@ -72,8 +72,9 @@ Slot wide_shift(Writing& w, const Expression& e) {
 }
 
 bool may_be_divided_by_zero(const Expression& e) {
-    return (e.op == Word::divided || e.op == Word::mod_) && !e.operands[1]->type->is_real() &&
-           e.operands[1]->kind != E::constant;
+    const Expression& divisor = *e.operands[1];
+    return (e.op == Word::divided || e.op == Word::mod_) && !divisor.type->is_real() &&
+           (divisor.kind != E::constant || divisor.constant.integer == 0);
 }
 
 Slot unary(Writing& w, const Expression& e, Slot wanted) {

@@ -44,6 +44,8 @@ void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const So
     }
     to.tree.leave_lost_out();
     join_declared_apart(to.tree);
+    give_actions_to_blocks(to.tree);
+    tell_types_by_capitals(to.tree);
     expand_generics(to.tree);
     leave_out_declared(to.tree, standard);
     warn_of_declared(to.tree, out);

@@ -74,6 +74,10 @@ std::string without_values(std::string_view name) {
     return lower(name.substr(0, name.find('<')));
 }
 
+auto is_in(const std::set<std::string>& names) {
+    return [&](const std::string& name) { return names.contains(name); };
+}
+
 std::string_view space_at(const Tree& tree, Place place) {
     std::string_view path;
     const auto scopes = tree.scopes.find(place.source);
@@ -100,7 +104,12 @@ SourcePool::Entry SourcePool::entry_of(const std::shared_ptr<const SourceFile>& 
     Tree tree;
     parse(read_tokens(entry.file, unread, SourceKind::tests), tree, unread);
     for (const auto& [source, scopes] : tree.scopes)
-        for (const Scope& scope : scopes) add_spaces(entry.spaces, scope);
+        for (const Scope& scope : scopes) {
+            add_spaces(entry.spaces, scope);
+            entry.own_spaces.insert(lower(scope.path));
+            if (file->excerpts.empty()) continue;
+            for (const Token& used : scope.usings) entry.usings.insert(lower(used.text));
+        }
     const auto declare = [&](const Token& name) {
         add_declared(entry.types, space_at(tree, name.place), name.text);
     };
@@ -233,8 +242,9 @@ std::vector<std::shared_ptr<const SourceFile>> SourcePool::needed_by(
     return files_of(chosen);
 }
 
-/// Whatever declares a name that one of the chosen uses, and none declares. A value may be called
-/// as a type is, that of its own as well.
+/// Whatever declares a name that one of the chosen uses, and none declares, and all of a namespace
+/// that a project's source says it uses. A value may be called as a type is, that of its own as
+/// well.
 void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to) const {
     const auto has_type = [&](const std::string& name) {
         return std::ranges::any_of(chosen, [&](const Entry* e) { return e->types.contains(name); });
@@ -251,6 +261,8 @@ void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to
         const auto add_types = [&](const std::string& name) {
             if (!has_type(name)) std::ranges::for_each(nearest(name, user, to), add);
         };
+        for (const Entry& entry : entries_)
+            if (std::ranges::any_of(user.usings, is_in(entry.own_spaces))) add(&entry);
         std::ranges::for_each(user.used_types, add_types);
         for (const std::string& name : user.used) {
             const Entry* value =

@@ -42,10 +42,12 @@ class SourcePool {
         std::shared_ptr<const SourceFile> file;
         /// Declared blocks and types: `T`, `b.T` and `a.b.T`, each with the last.
         std::multimap<std::string, std::string> types;
-        std::set<std::string> spaces;  ///< namespaces whose names it may write without them
-        std::set<std::string> values;  ///< declared globals and values of enumerations
-        std::set<std::string> own;     ///< variables and members, which hide others' values
-        std::set<std::string> used;    ///< other than as types
+        std::set<std::string> spaces;      ///< namespaces whose names it may write without them
+        std::set<std::string> usings;      ///< of a project: namespaces that it says it uses
+        std::set<std::string> own_spaces;  ///< namespaces that it has something in
+        std::set<std::string> values;      ///< declared globals and values of enumerations
+        std::set<std::string> own;         ///< variables and members, which hide others' values
+        std::set<std::string> used;        ///< other than as types
         std::set<std::string> used_types;
     };
     static Entry entry_of(const std::shared_ptr<const SourceFile>& file);

@@ -76,8 +76,10 @@ bool uses_source_of(const BlockType& type, const Tokens& tokens) {
     if (text.empty()) return false;
     NameSet said;
     add_names(said, text, "FUNCTION \"" + std::string(type.handle) + '.', "\"");
+    NameSet first_words;  // of `Modulo.Enable`
+    for (const std::string_view name : said) first_words.insert(name.substr(0, name.find('.')));
     return std::ranges::any_of(tokens.tokens, [&](const Token& token) {
-        return token.word == Word::name && said.contains(token.text);
+        return token.word == Word::name && first_words.contains(token.text);
     });
 }
 

@@ -353,8 +353,8 @@ class Lexer {
         return !tokens_.tokens.empty() && tokens_.tokens.back().word == Word::dot;
     }
 
-    /// To its closing quote, to the end of its line where there is none. CODESYS lets a text go on
-    /// in the next lines; one that only lacks its quote has a ';' before the next one.
+    /// To its closing quote, to the end of its line where there is none. It may go on in the next
+    /// lines; one that lacks its quote has a ';' before the next one, of B&R where its line ends.
     void pass_text() {
         const auto is_pair = [&] {
             return peek() == '$' ? peek(1) != '\n' && peek(1) != '\0' : at("''");
@@ -365,11 +365,12 @@ class Lexer {
         };
         pass_until("'\n");
         const std::size_t end_of_line = at_;
-        if (peek() == '\n') pass_until("';");
+        const bool is_of_br = tokens_.source->dialect.vendor == Vendor::automation_studio;
+        const bool ends_so = text_[text_.find_last_not_of(" \t\r", at_ - 1)] == ';';
+        if (peek() == '\n') pass_until(is_of_br && !ends_so ? "'" : "';");
         const std::size_t behind = text_.find_first_not_of(" \t", at_ + 1);
-        const bool is_whole =
-            peek() == '\'' && behind != text_.npos &&
-            std::string_view(";,)]\r\n").find(text_[behind]) != std::string_view::npos;
+        const bool is_whole = peek() == '\'' && behind != text_.npos &&
+                              text_.find_first_of(";,)]\r\n", behind) == behind;
         if (at_ != end_of_line && !is_whole) at_ = end_of_line;
     }
 

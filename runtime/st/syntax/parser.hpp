@@ -21,6 +21,14 @@ std::string_view name_of_list(const Source& source);
 /// anywhere stays as it is.
 void join_declared_apart(Tree& tree);
 
+/// An ACTION of B&R in a file without a block is of the one FUNCTION_BLOCK in its folder that runs
+/// it, in its body or in an action that it was given so.
+void give_actions_to_blocks(Tree& tree);
+
+/// B&R's types of one file whose names differ in capitals alone are several: the later ones get
+/// names of their own, wherever these stand so.
+void tell_types_by_capitals(Tree& tree);
+
 /// Reads each block with VAR_GENERIC again for each `Stack<10>`, as a block of that name. Values
 /// are literals, constants and constants of a generic block around; one whose constants have no
 /// values of their own is left out.

@@ -16,9 +16,9 @@ struct Renamed {
 
 constexpr Renamed types[] = {
     {"axis_ref",
-     " to_axis to_speedaxis to_positioningaxis to_synchronousaxis axis_ref_sm3 "
-     "axis_ref_virtual_sm3 free_encoder_ref mcaxistype "},
-    {"cam_ref", " to_cam "},
+     " to_axis to_speedaxis to_positioningaxis to_synchronousaxis to_externalencoder "
+     "axis_ref_sm3 axis_ref_virtual_sm3 free_encoder_ref mcaxistype "},
+    {"cam_ref", " to_cam to_cambase "},
     {"axes_group_ref", " axis_group_ref_sm3 to_kinematics "},
     {"path_ref", " mc_path_ref "},
     {"ton", " ton_time ton_ltime lton iec_timer iec_ltimer "},
