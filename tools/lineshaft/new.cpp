@@ -57,6 +57,10 @@ struct NewCommand {
 
 Exit execute(const NewCommand& command) {
     std::filesystem::path path = command.name;
+    if (!path.has_filename()) {
+        spdlog::error("'{}' names no file: lineshaft new shaft.yaml", command.name);
+        return Exit::wrong;
+    }
     if (path.extension() == ".yml") path.replace_extension();
     if (path.extension() != ".yaml") path += ".yaml";
     std::error_code unknown;
@@ -65,6 +69,7 @@ Exit execute(const NewCommand& command) {
         return Exit::wrong;
     }
     Diagnostics out;
+    check_outputs({path.string()}, {}, out);
     const std::string text = command.project.empty()
                                  ? fmt::format(program_text, path.stem().string())
                                  : program_around(command.project, path, out);
