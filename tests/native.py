@@ -142,7 +142,7 @@ def check_hardened(runs, native):
     check_told(runs, native, "cannot make /proc/lineshaft", XDG_CACHE_HOME="/proc")
     check_told(runs, native, "HOME names", XDG_CACHE_HOME=None, HOME=None)
     false = shutil.which("false")
-    check_told(runs, native, f"{false} failed", CXX=false)
+    check_told(runs, native, f"{false} failed: exit code 1", CXX=false)
     cache.chmod(0o755)
     check_told(runs, native, "others may use")
     cache.chmod(0o700)

@@ -706,6 +706,38 @@ def check_kept():
     assert all(f"inputs.ratio: {value}}}" in text for value in range(1, kept + 1)), (kept, text)
 
 
+def check_retained():
+    """A recording keeps the retained values that the machine began with; a client's value that a port cannot hold is refused."""
+    (FOLDER / "own.st").write_text("""PROGRAM Main
+VAR_INPUT n : INT; END_VAR
+VAR_OUTPUT RETAIN total : DINT; END_VAR
+total := total + n;
+END_PROGRAM
+""")
+    (FOLDER / "own.yaml").write_text("""lineshaft: 1
+tasks: {main: {every: 10 ms}}
+sources: own.st
+blocks: {m: {type: Main, task: main, n: inputs.n}}
+inputs: {n: 1}
+modbus: {holding_registers: {0: {signal: inputs.n, type: int32, write: true}}}
+run: {for: 1 s}
+trace: {task: main, signals: [m.total]}
+""")
+    for trace in ("first.csv", "second.csv"):
+        machine = Machine("--retain-file", "kept", "--record", "own.recording.yaml", "--trace", trace, program="own.yaml")
+        machine.post("set", {"inputs.n": 3})
+        status, answer = machine.ask("/api/set", {"inputs.n": 40000})
+        assert status == 400 and answer["code"] == "L0305", answer
+        client = machine.modbus()
+        assert client.write_registers(0, [1, 0]).exception_code == 3
+        assert not client.write_registers(0, [0, 5]).isError()
+        assert machine.end()[0] == 0
+    assert "retained: " in (FOLDER / "own.recording.yaml").read_text()
+    again = run("run", "own.yaml", "--recording", "own.recording.yaml", "--trace", "again.csv")
+    assert again.returncode == 0, again.stderr
+    assert (FOLDER / "again.csv").read_bytes() == (FOLDER / "second.csv").read_bytes()
+
+
 def check_types():
     """A value is one of the signal's type; a name may have any letters."""
     (FOLDER / "types.scl").write_text("""FUNCTION_BLOCK taker
@@ -828,6 +860,7 @@ def main():
         check_protocol()
         check_types()
         check_kept()
+        check_retained()
         check_privileges()
         if recordings >= 100:
             check_capture()

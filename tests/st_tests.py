@@ -84,7 +84,7 @@ with tempfile.TemporaryDirectory() as folder:
     expect("exit code of what fails", code, 1)
     compare(root / "fail/expected.txt", said)
     suite = xml.parse(junit).getroot()
-    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("20", "4"))
+    expect("failures and errors", (suite.get("failures"), suite.get("errors")), ("21", "4"))
     run(root / "bad", "no_test.st", "--junit", str(junit))
     case = xml.parse(junit).getroot().find("testcase")
     expect("a file that is refused", [case.get(key) for key in ("classname", "file", "name")], ["no_test.st"] * 3)
@@ -103,6 +103,28 @@ with tempfile.TemporaryDirectory() as folder:
     pathlib.Path(folder, "large_test.st").write_text("// so many words\n" * (1 << 16), encoding="utf-8")
     code, said, _ = run(pathlib.Path(folder), ".")
     expect("a file of a folder that is too large is told", (code, "large_test.st' has more than" in said), (1, True))
+
+with tempfile.TemporaryDirectory() as folder:
+    pathlib.Path(folder, "endless.st").write_text("""PROGRAM Main
+VAR k, n : DINT; a, b : DINT := 1; END_VAR
+k := 0; n := 0;
+WHILE k < 3 DO k := k + 1; END_WHILE;
+WHILE a <> b + 1 DO n := n + 1; END_WHILE;
+END_PROGRAM
+""", encoding="utf-8")
+    pathlib.Path(folder, "endless.yaml").write_text("""lineshaft: 1
+tasks: {main: {every: 10 ms}}
+sources: endless.st
+blocks: {m: {type: Main, task: main}}
+run: {for: 20 ms, on_error: continue}
+trace: {task: main, signals: [m.n]}
+expect: [{at: end, m.n: 1}]
+""", encoding="utf-8")
+    traces = []
+    for options in ([], ["--coverage", "out.info"], ["--no-native"]):
+        run(folder, "endless.yaml", "--trace-failed", "traces", *options)
+        traces.append(pathlib.Path(folder, "traces", "endless.csv").read_text(encoding="utf-8"))
+    expect("a loop that does not end, with coverage and interpreted", traces[1:], traces[:1] * 2)
 
 code, said, _ = run(root, "pass", "--filter", "mocked function")
 expect("--filter", (code, said.splitlines()[-1]), (0, "1 of 1 passed"))

@@ -361,6 +361,26 @@ def check_not_finite():
             yield f"a page of what is not finite: {code} {err}"
 
 
+def check_commas():
+    """The name of an element of two dimensions has a comma."""
+    (FOLDER / "two.st").write_text("PROGRAM Main VAR m : ARRAY[0..1, 1..2] OF INT; END_VAR m[1, 2] := m[1, 2] + 1; END_PROGRAM\n")
+    (FOLDER / "two.yaml").write_text("lineshaft: 1\ntasks: {main: {every: 10 ms}}\nsources: two.st\n"
+                                     "blocks: {p: {type: Main, task: main}}\nrun: {for: 50 ms}\n"
+                                     'trace: {task: main, signals: ["p.m[1,1]", "p.m[1,2]"]}\n')
+    for dialect, separator in (("rfc4180", ","), ("excel-de", ";")):
+        for names, title in (("dot", "p.m[1,2]"), ("slash", "p/m[1,2]")):
+            lineshaft("run", "two.yaml", "--trace", "two.csv", "--dialect", dialect, "--names", names)
+            rows = rows_of("two.csv", delimiter=separator)
+            if any(len(row) != 4 for row in rows) or rows[0][3] != title:
+                yield f"a title with a comma in {dialect}: {rows[0]}"
+            for command in (("verify", "two.csv"), ("diff", "two.csv", "two.csv")):
+                if lineshaft(*command)[0] != 0:
+                    yield f"{command} of a title with a comma in {dialect}: {lineshaft(*command)}"
+    code, out, err = lineshaft("run", "two.yaml", "--show", "p.m[1,1],p.m[1,2]")
+    if code != 0 or "p.m[1,2]" not in out:
+        yield f"--show of an element of two dimensions: {code} {out}{err}"
+
+
 def main():
     (FOLDER / "p.yaml").write_text(PROGRAM)
     code, out, err = lineshaft("run", "p.yaml", "--trace", "run.csv")
@@ -370,7 +390,7 @@ def main():
     for name in ("run.csv", "run.change.csv", "run.often.1.csv"):
         failures += [*check_rules(name), *check_tools(name)]
     failures += [*check_conditions(), *check_styles(), *check_verify(), *check_verify_bytes(), *check_origins(),
-                 *check_diff(), *check_not_finite()]
+                 *check_diff(), *check_not_finite(), *check_commas()]
     for failure in failures:
         print(failure)
     print(f"{len(failures)} failures")

@@ -40,11 +40,24 @@ std::vector<std::string> csv_cells(std::string_view line, char separator) {
     }
 }
 
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+std::string quoted(const std::string& text, char separator) {
+    if (text.find_first_of(std::string("\"\r\n") + separator) == std::string::npos) return text;
     std::string out = "\"";
     for (const char c : text) out.append(c == '"' ? 2U : 1U, c);
     return out + "\"";
+}
+
+char separator_of(std::string_view header) {
+    bool quoted = false;
+    int brackets = 0;
+    for (const char c : header) {
+        if (c == '"') quoted = !quoted;
+        if (quoted) continue;
+        if (c == '[') ++brackets;
+        if (c == ']') --brackets;
+        if (brackets == 0 && (c == ',' || c == ';')) return c;
+    }
+    return ',';
 }
 
 }  // namespace lineshaft

@@ -15,8 +15,12 @@ const char* cell_end(const char* at, const char* end, char separator);
 /// What the cell holds, its quotes removed.
 std::string unquoted(std::string_view cell);
 
-/// As a cell of an RFC 4180 file with commas, in quotes where it must.
-std::string quoted(const std::string& text);
+/// As a cell of an RFC 4180 file with this separator, in quotes where it must.
+std::string quoted(const std::string& text, char separator = ',');
+
+/// What stands between the cells of a file with this header: the first ',' or ';' outside of quotes
+/// and of brackets, which indices of an array stand in.
+char separator_of(std::string_view header);
 
 /// Reads a number; why a cell does not do, null when it does.
 template <class Number>

@@ -146,8 +146,7 @@ bool CsvReader::header() {
     if (table_.metadata)
         for (const CsvMetadata::Column& column : table_.metadata->columns)
             described_.emplace(column.title, &column);
-    if (line_.find(',') == std::string_view::npos && line_.find(';') != std::string_view::npos)
-        separator_ = ';';
+    separator_ = separator_of(line_);
     const char* const end = line_.data() + line_.size();
     std::vector<std::string_view> cells;
     for (const char* at = line_.data(); !is_enough(); ++at) {

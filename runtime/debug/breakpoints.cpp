@@ -4,6 +4,7 @@
 #include <charconv>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,18 +50,24 @@ std::optional<HitCount> read_hits(std::string_view text, std::string& error) {
     return hits;
 }
 
+/// `{x}` is the value of x, `{{` and `}}` are the braces themselves.
 void read_log(Breakpoint& to) {
-    std::string_view text = to.wanted.log;
-    while (!text.empty()) {
-        const std::size_t open = std::min(text.find('{'), text.size());
-        const std::size_t close = std::min(text.find('}', open), text.size());
-        const bool has_one = close < text.size();
-        to.log.emplace_back(
-            text.substr(0, has_one ? open : text.size()),
-            has_one ? read_expression(std::string(text.substr(open + 1, close - open - 1)), to)
-                    : nullptr);
-        text.remove_prefix(has_one ? close + 1 : text.size());
+    std::string_view rest = to.wanted.log;
+    std::string text;
+    while (!rest.empty()) {
+        const char c = rest.front();
+        const bool is_brace = rest.size() > 1 && rest[1] == c && (c == '{' || c == '}');
+        const std::size_t close = c == '{' && !is_brace ? rest.find('}') : rest.npos;
+        if (close == rest.npos) {
+            text += c;
+            rest.remove_prefix(is_brace ? 2 : 1);
+            continue;
+        }
+        to.log.emplace_back(std::exchange(text, {}),
+                            read_expression(std::string(rest.substr(1, close - 1)), to));
+        rest.remove_prefix(close + 1);
     }
+    if (!text.empty()) to.log.emplace_back(std::move(text), nullptr);
 }
 
 }  // namespace

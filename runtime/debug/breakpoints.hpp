@@ -15,7 +15,8 @@ struct Wanted {
     int line = 0;
     std::string condition = {};  ///< an expression; empty: always
     std::string hits = {};       ///< `3`: the third time; `>= 3`, `> 3`, `% 3`; empty: each time
-    std::string log = {};        ///< told instead of stopping: `speed is {speed}`; empty: it stops
+    std::string log =
+        {};  ///< told instead of stopping: `speed is {speed}`, and `{{` for a '{'; empty: it stops
 };
 
 /// How often it must have been come to.

@@ -65,6 +65,9 @@ struct InputNode {
     std::string name;
     std::optional<Signal> signal = {};  ///< empty: reported
     Value initial = {};
+    /// Its type, and the narrowest limits of what it feeds in blocks of sources, which are stopped
+    /// by a value that they cannot hold.
+    Field field = {};
 };
 
 struct OutputNode {

@@ -41,6 +41,8 @@ void resolve_inputs(Resolving& to) {
         if (input.signal) {
             input.signal->name = "inputs." + name.text;
             input.signal->port = {-1, static_cast<int>(to.net.inputs.size())};
+            input.field.type = input.signal->type;
+            input.field.direction = Direction::input;
         }
         to.net.inputs.push_back(std::move(input));
     }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/model/literal.hpp"
 #include "runtime/names/resolve.hpp"
 #include "runtime/source/codes.hpp"
 
@@ -135,6 +136,25 @@ bool check_unit(const Resolving& to, const Assignment& wire, const Signal& sourc
     return false;
 }
 
+/// Other blocks than those of sources report what they cannot use themselves.
+void narrow(Net& net, const Signal& source, const Instance& block, const Field& field) {
+    if (source.port.instance >= 0 || !net.kinds || net.kinds->find(block.type->name) != block.type)
+        return;
+    Field& limited = net.inputs[static_cast<std::size_t>(source.port.field)].field;
+    limited.minimum = std::max(limited.minimum, field.minimum);
+    limited.maximum = std::min(limited.maximum, field.maximum);
+}
+
+void check_initial_values(const Resolving& to) {
+    for (std::size_t i = 0; i < to.net.inputs.size(); ++i) {
+        const InputNode& input = to.net.inputs[i];
+        if (!input.signal || input.field.admits(input.initial)) continue;
+        Field named = input.field;
+        named.name = input.signal->name;
+        read_literal(to.read, to.program.inputs[i].second, named, to.net.unit(input.signal->unit));
+    }
+}
+
 void connect(Resolving& to, const Assignment& wire) {
     const auto& [number, field, value, text] = wire;
     const auto name = split_signal(text->signal);
@@ -157,6 +177,7 @@ void connect(Resolving& to, const Assignment& wire) {
     const bool same_task =
         source->port.instance >= 0 && source->task == to.net.instance(number).task;
     const bool is_delay = text->previous && source->port.instance < number;
+    if (given.text == wanted.text) narrow(to.net, *source, to.net.instance(number), *field);
     to.net.wires.push_back({.from = source->port,
                             .to = target,
                             .late = is_delay         ? Late::delayed
@@ -213,6 +234,7 @@ void add_orders(Net& net) {
 void resolve_wires(Resolving& to) {
     for (const Assignment& assignment : to.assignments)
         if (assignment.wire) connect(to, assignment);
+    check_initial_values(to);
     add_orders(to.net);
     add_reference_orders(to.net);
     add_orders_of_handles(to.net);

@@ -74,8 +74,7 @@ std::optional<Target> find_target(const Connecting& to, const Node& node) {
     if (target.is_of_block()) {
         target.field = to.net.field(port);
     } else {
-        target.field.type = target.signal.type;
-        target.field.direction = Direction::input;
+        target.field = to.net.inputs[static_cast<std::size_t>(port.field)].field;
     }
     if (target.is_of_block() && is_set_where_read(to.net, target))
         target.field.direction = Direction::local;

@@ -127,8 +127,10 @@ struct RecordedPlan {
 
 /// What came from outside while a machine was served.
 struct RecordingPlan {
-    std::string program, meaning;       ///< name of its file; Meaning::in_force
-    std::vector<RecordedPlan> entries;  ///< sorted by time
+    std::string program, meaning;            ///< name of its file; Meaning::in_force
+    std::string retained;                    ///< that the machine began with, see retained_line()
+    std::shared_ptr<const SourceFile> file;  ///< what stands before the entries
+    std::vector<RecordedPlan> entries;       ///< sorted by time
 
     std::int64_t end() const { return entries.empty() ? 0 : entries.back().at; }
 };

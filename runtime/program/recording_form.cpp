@@ -13,7 +13,8 @@ namespace {
 
 constexpr YamlLimits recording_limits{.bytes = 256 << 20};
 /// Of one that is not written as `serve` does it.
-constexpr YamlLimits other_limits{.nodes = 1'000'000};
+constexpr YamlLimits other_limits{
+    .bytes = 256 << 20, .nodes = 1'000'000, .scalar_bytes = 256 << 20};
 
 // clang-format off: tables are laid out by hand
 
@@ -62,6 +63,9 @@ const Form& recording_form() {
              key<&RecordingPlan::meaning>(
                  "meaning", a_value.as("the program's meaning"),
                  "16 hexadecimal digits: tells whether the program is another one now"),
+             key<&RecordingPlan::retained>("retained", a_value.as("retained values"),
+                                           "text of the file of retained values that the machine "
+                                           "began with, in one line"),
              key<read_entries>("entries", either({list_of(a_form(entry_form)), nothing}),
                                "in the order in which they came")
                  .must()}});
@@ -113,9 +117,11 @@ std::optional<RecordingPlan> read_recording(const std::string& path, Diagnostics
     const bool by_lines = is_entry_a_line(text.substr(entries));
     SourceFile head{path, std::string(by_lines ? text.substr(0, entries) : text)};
     const Reader read(out);
-    const auto root = parse_yaml(std::make_shared<SourceFile>(std::move(head)), out, other_limits);
+    const auto file = std::make_shared<const SourceFile>(std::move(head));
+    const auto root = parse_yaml(file, out, other_limits);
     if (!root || !check_kind(read, *root, "lineshaft_recording")) return {};
     RecordingPlan plan;
+    plan.file = file;
     if (!read_form(recording_form(), read, *root, plan)) return {};
     if (by_lines) {
         const auto line = 1 + static_cast<int>(std::ranges::count(text.substr(0, entries), '\n'));

@@ -122,6 +122,20 @@ void read_program(st::Cursor& p, const std::string& resource, const std::string&
     task_of(tasks, has_task ? &task : nullptr, resource).programs.push_back(std::move(program));
 }
 
+/// A task that no TASK declares would never be due.
+void refuse_undeclared(const Reading& to, const std::vector<ProjectTask>& tasks,
+                       const std::vector<std::string>& declared) {
+    for (const ProjectTask& task : tasks) {
+        const auto is_it = [&](const std::string& name) {
+            return st::same_name(name, task.name.text);
+        };
+        if (task.is_background || std::ranges::any_of(declared, is_it)) continue;
+        to.out.add(code::unknown_task, task.name.mark,
+                   fmt::format("no TASK '{}' is declared", task.name.text),
+                   suggest(task.name.text, declared));
+    }
+}
+
 /// A block of a program that another task runs stays in its program here.
 void warn_of_parts(const Reading& to, const std::vector<ProjectTask>& tasks) {
     for (const ProjectTask& task : tasks)
@@ -222,6 +236,7 @@ void read_configuration(const Reading& to, const std::shared_ptr<const SourceFil
     st::Cursor p{st::read_tokens(source, unread)};
     while (!p.is(Word::end_of_file) && !p.is(Word::configuration_)) p.take();
     std::vector<ProjectTask> tasks;
+    std::vector<std::string> declared;
     std::string configuration, resource;
     bool is_within = false;
     while (!p.is(Word::end_of_file)) {
@@ -229,6 +244,7 @@ void read_configuration(const Reading& to, const std::shared_ptr<const SourceFil
             is_within = p.is(Word::configuration_);
         if (p.is_name() && p.says("task") && p.is_name(1) && p.next(2).word == Word::open) {
             tasks.push_back(read_task(p, resource));
+            declared.push_back(tasks.back().name.text);
         } else if (p.is(Word::program_) && is_within) {
             read_program(p, resource, configuration, tasks);
         } else {
@@ -238,6 +254,7 @@ void read_configuration(const Reading& to, const std::shared_ptr<const SourceFil
             p.take();
         }
     }
+    refuse_undeclared(to, tasks, declared);
     warn_of_parts(to, tasks);
     std::ranges::move(tasks, std::back_inserter(to.project.tasks));
 }

@@ -336,11 +336,15 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     const std::string name = readable(path, out);
     if (name.empty()) return 0;
     const auto file = read_source(name, out, {}, retain_limits);
-    if (!file) return 0;
-    const Json root = parse_json(file->text);
+    return file ? take_retained(file->text, file, machine, out) : 0;
+}
+
+int take_retained(const std::string& text, const std::shared_ptr<const SourceFile>& file,
+                  Machine& machine, Diagnostics& out) {
+    const Json root = parse_json(text);
     KeptMemory memory(machine, 0);
     const Reading reading{root, machine, memory, file, out};
-    if (const std::string wrong = what_is_wrong(root, file->text); !wrong.empty()) {
+    if (const std::string wrong = what_is_wrong(root, text); !wrong.empty()) {
         reading.fail(wrong);
         return 0;
     }
@@ -353,6 +357,22 @@ int read_retained(const std::string& path, Machine& machine, Diagnostics& out) {
     if (const std::string damaged = memory.damaged(); out.empty() && !damaged.empty())
         reading.fail(fmt::format("the state of {} cannot be as the file has it", damaged));
     return set;
+}
+
+std::string retained_line(const std::string& path) {
+    Diagnostics told;  // by the run that takes them
+    const std::string name = readable(path, told);
+    int error = 0;
+    const std::string text = name.empty() ? "" : read_bytes(name, retain_limits.bytes, error);
+    if (error != 0 || !is_intact(text)) return {};
+    std::string line;
+    bool is_indent = false;
+    for (const char c : text) {
+        is_indent = c == '\n' || (is_indent && c == ' ');
+        if (!is_indent) line += c;
+    }
+    const std::size_t place = check_place(line);
+    return line.replace(place, no_check.size(), check_of(line, place));
 }
 
 }  // namespace lineshaft

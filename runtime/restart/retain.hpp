@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "runtime/machine/machine.hpp"
@@ -20,5 +21,12 @@ std::string write_retained(const std::string& path, const Machine& machine, std:
 /// version or an earlier layout. A file that is not there is an empty one: nothing has been
 /// retained yet.
 int read_retained(const std::string& path, Machine& machine, Diagnostics& out);
+
+/// The same of a text, as retained_line() has made it, that stands in `file`.
+int take_retained(const std::string& text, const std::shared_ptr<const SourceFile>& file,
+                  Machine& machine, Diagnostics& out);
+
+/// What read_retained() would take, in one line; empty where there is nothing whole.
+std::string retained_line(const std::string& path);
 
 }  // namespace lineshaft

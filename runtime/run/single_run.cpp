@@ -135,6 +135,12 @@ class SingleRun {
     void conclude();
     void finish();
     void open_traces();
+    /// What a recording keeps was retained, too.
+    bool is_warm() const {
+        const auto& recording = loaded_.program.recording;
+        return options_.restart == Restart::warm &&
+               (!options_.retain_path.empty() || (recording && !recording->retained.empty()));
+    }
     bool has_trace() const {
         return !options_.trace_path.empty() && !loaded_.linked.traces.empty();
     }
@@ -231,7 +237,10 @@ RunResult SingleRun::step() {
 bool SingleRun::restart() {
     if (options_.checkpoint_every > 0 || options_.drive || options_.restart == Restart::hot)
         by_.program = fingerprint(loaded_.program, machine_);
-    if (options_.restart == Restart::warm && !options_.retain_path.empty())
+    const auto& recording = loaded_.program.recording;
+    if (is_warm() && recording && !recording->retained.empty())
+        retained_ = take_retained(recording->retained, recording->file, machine_, report_.refused);
+    else if (is_warm())
         retained_ = read_retained(options_.retain_path, machine_, report_.refused);
     for (const Diagnostic& warning : report_.refused.warnings())
         report_.warnings.push_back(warning.message);
@@ -328,10 +337,10 @@ bool SingleRun::resume() {
 
 void SingleRun::tell_restart() {
     if (!events_ || options_.restart == Restart::hot) return;
-    const bool warm = options_.restart == Restart::warm && !options_.retain_path.empty();
     events_->happened({.kind = EventKind::restart,
-                       .text = warm ? fmt::format("warm restart, {} retained values", retained_)
-                                    : "cold restart"});
+                       .text = is_warm()
+                                   ? fmt::format("warm restart, {} retained values", retained_)
+                                   : "cold restart"});
 }
 
 std::string SingleRun::checkpoint(std::int64_t time) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/names/signal_list.hpp"
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/units.hpp"
@@ -58,16 +59,6 @@ std::vector<Wanted> wanted_of(const Json& values) {
             {name, value.is_string() ? value.get<std::string>() : value.dump(), value.is_number()});
     }
     return wanted;
-}
-
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> parts;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(',', at), text.size());
-        if (end > at) parts.push_back(text.substr(at, end - at));
-        at = end + 1;
-    }
-    return parts;
 }
 
 bool is_traced(const Linked& linked, const Signal& signal) {
@@ -294,7 +285,7 @@ ApiReply Api::signals(const ApiRequest&) {
 }
 
 std::vector<const Signal*> Api::named(const ApiRequest& request, Diagnostics& out) {
-    return desk_.signals(split(request.parameter("signals")), out);
+    return desk_.signals(signals_in(request.parameter("signals")), out);
 }
 
 ApiReply Api::values(const ApiRequest& request) {

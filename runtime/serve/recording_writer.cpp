@@ -24,6 +24,14 @@ std::string time_text(std::int64_t time) {
 constexpr std::string_view first_key = "lineshaft_recording:", no_entry = "entries:\n",
                            the_end = "end: true}\n";
 
+std::string head_of(const Recorded& machine) {
+    std::string head = fmt::format("{} 1\nprogram: {}\nmeaning: '{}'\n", first_key,
+                                   yaml_quoted(machine.program), machine.meaning);
+    if (!machine.retained.empty())
+        head += fmt::format("retained: {}\n", yaml_quoted(machine.retained));
+    return head + std::string(no_entry);
+}
+
 std::string value_text(const Change& change) {
     const Type type = change.kind == Change::Kind::set ? change.stimulus.type : change.force.type;
     return type == Type::enumeration ? yaml_name(change.text) : change.text;
@@ -46,14 +54,12 @@ std::string recorded(std::int64_t time, std::span<const Change> changes) {
                        lifts ? "[" + list + "]" : "{" + list + "}");
 }
 
-RecordingWriter::RecordingWriter(World& world, std::string path, const std::string& program,
-                                 const std::string& meaning, bool goes_on, RecordSync sync)
+RecordingWriter::RecordingWriter(World& world, std::string path, const Recorded& machine,
+                                 bool goes_on, RecordSync sync)
     : world_(world), path_(std::move(path)), sync_(sync) {
     open(goes_on);
     if (!error_.empty()) return;
-    if (!goes_on)
-        begin(fmt::format("lineshaft_recording: 1\nprogram: {}\nmeaning: '{}'\n{}",
-                          yaml_quoted(program), meaning, no_entry));
+    if (!goes_on) begin(head_of(machine));
     if (!error_.empty()) return;
     try {
         thread_ = world_.start([this] { work(); });

@@ -30,6 +30,12 @@ struct RecordSync {
     std::int64_t within = each;  ///< each: before it is acknowledged; [ns] later; never
 };
 
+/// Which machine a recording is of, and how it began.
+struct Recorded {
+    std::string program, meaning;  ///< name of its file; Meaning::in_force
+    std::string retained = {};     ///< retained_line(); empty: all began with its initial values
+};
+
 /// Writes a recording (see recording_form.hpp) as it comes: a thread of its own writes each entry,
 /// so that the machine's thread waits for no disk, but for a checkpoint: it notes how much of the
 /// recording there was. Who has asked for a change waits in keep(). When the disk is full, what
@@ -39,9 +45,9 @@ class RecordingWriter : public Observer {
     /// Replaces the file where it is a recording that has ended, or empty; where a machine was
     /// killed that recorded there, its recording stays, and this one is beside it, see path().
     /// `goes_on`: writes on where a checkpoint will say. Not where another one writes, nor over
-    /// what is no recording: see error(). `meaning`: Meaning::in_force.
-    RecordingWriter(World& world, std::string path, const std::string& program,
-                    const std::string& meaning, bool goes_on, RecordSync sync);
+    /// what is no recording: see error().
+    RecordingWriter(World& world, std::string path, const Recorded& machine, bool goes_on,
+                    RecordSync sync);
     ~RecordingWriter() override;
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/program/meaning.hpp"
+#include "runtime/restart/retain.hpp"
 #include "runtime/serve/modbus_session.hpp"
 #include "runtime/source/codes.hpp"
 
@@ -25,12 +26,15 @@ void refuse_address(const Address& address, Diagnostics& refused) {
 
 /// What is written to the recording's file, if there is one.
 void open_recording(std::optional<RecordingWriter>& recording, const Loaded& loaded,
-                    const ServeOptions& options, bool goes_on, Diagnostics& refused) {
+                    const ServeOptions& options, const RunOptions& how, Diagnostics& refused) {
     if (options.record.empty()) return;
-    const std::string program =
-        std::filesystem::path(loaded.program.file->path).filename().string();
-    recording.emplace(World::system(), options.record, program, meaning_of(loaded.program).in_force,
-                      goes_on, options.sync);
+    Recorded machine{
+        .program = std::filesystem::path(loaded.program.file->path).filename().string(),
+        .meaning = meaning_of(loaded.program).in_force};
+    if (how.restart == Restart::warm && !how.retain_path.empty())
+        machine.retained = retained_line(how.retain_path);
+    recording.emplace(World::system(), options.record, machine, how.restart == Restart::hot,
+                      options.sync);
     if (!recording->error().empty())
         refused.add(code::recording_cannot_be_written, {}, recording->error(),
                     "name another file: --record FILE.yaml");
@@ -77,8 +81,7 @@ ServeReport serve(Loaded& loaded, RunOptions how, const ServeOptions& options,
     std::optional<RecordingWriter> recording;
     std::optional<Audit> audit;
     if (refused.empty()) open_audit(audit, options.audit, refused);
-    if (refused.empty())
-        open_recording(recording, loaded, options, how.restart == Restart::hot, refused);
+    if (refused.empty()) open_recording(recording, loaded, options, how, refused);
     if (options.realtime > 0)
         if (const std::string error = Pacer::be_realtime(options.realtime); !error.empty())
             refused.add(code::no_realtime_priority, {}, error, realtime_help);

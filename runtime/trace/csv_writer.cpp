@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "runtime/csv/csv_cells.hpp"
 #include "runtime/source/number_text.hpp"
 
 namespace lineshaft {
@@ -36,7 +37,7 @@ CsvWriter::CsvWriter(std::string path, const TraceSetup& setup, const CsvStyle& 
       separator_(style.excel_de ? ';' : ',') {
     std::string header = title_of(style_, "time", "s") + separator_ + "scan";
     for (const Signal& signal : signals_)
-        header += separator_ + title_of(style_, signal.name, signal.unit);
+        header += separator_ + quoted(title_of(style_, signal.name, signal.unit), separator_);
     write(header + "\n");
     make_room();
 }

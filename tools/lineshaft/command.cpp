@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/names/signal_list.hpp"
 #include "runtime/projects/foreign_files.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/code/native/compile.hpp"
@@ -182,6 +183,22 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
                     fmt::format("there is no folder '{}' to write '{}' to", folder, *output),
                     "make it, or name another one");
     }
+}
+
+CLI::Option* add_signals(CLI::App& command, const std::string& option,
+                         std::vector<std::string>& names, const std::string& doc,
+                         std::size_t count) {
+    const auto take = [&names, option, count](const std::vector<std::string>& lists) {
+        for (const std::string& list : lists)
+            for (std::string& name : signals_in(list)) names.push_back(std::move(name));
+        if (count == 0 || names.size() == count) return;
+        const int wanted = static_cast<int>(count);
+        throw names.size() < count ? CLI::ArgumentMismatch::AtLeast(option, wanted, names.size())
+                                   : CLI::ArgumentMismatch::AtMost(option, wanted, names.size());
+    };
+    const int most = count == 0 ? CLI::detail::expected_max_vector_size : static_cast<int>(count);
+    return command.add_option_function<std::vector<std::string>>(option, take, doc)
+        ->expected(1, most);
 }
 
 ProgressLine::ProgressLine(bool quiet)

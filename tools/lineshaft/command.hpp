@@ -102,6 +102,12 @@ std::vector<std::shared_ptr<const SourceFile>> read_files(
     const std::vector<std::string>& files, const std::vector<std::string>& include_dirs,
     Diagnostics& out);
 
+/// An option of signals: `--signals a.x,b.y`, which are put into `names`; that many, where it is
+/// said.
+CLI::Option* add_signals(CLI::App& command, const std::string& option,
+                         std::vector<std::string>& names, const std::string& doc,
+                         std::size_t count = 0);
+
 /// What `lineshaft report` does, of these signals.
 Exit write_report(std::vector<std::string> inputs, std::vector<std::string> signals,
                   const std::string& output, bool quiet);

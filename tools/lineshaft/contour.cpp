@@ -278,15 +278,11 @@ void add_contour(CLI::App& app, Exit& result) {
     CLI::App* sub = app.add_subcommand(
         "contour", "Compare the real-time contour error of a trace with polyline and spline");
     sub->add_option("trace", command->trace, "The CSV file")->required();
-    sub->add_option("--command", command->command, "Columns of the commanded x and y")
+    add_signals(*sub, "--command", command->command, "Columns of the commanded x and y", 2)
         ->type_name("X,Y")
-        ->delimiter(',')
-        ->expected(2)
         ->required();
-    sub->add_option("--actual", command->actual, "Columns of the actual x and y")
+    add_signals(*sub, "--actual", command->actual, "Columns of the actual x and y", 2)
         ->type_name("X,Y")
-        ->delimiter(',')
-        ->expected(2)
         ->required();
     sub->add_flag("--json", command->json, "Print one JSON object for machines");
     sub->add_flag("--quiet", command->quiet, "No progress line");

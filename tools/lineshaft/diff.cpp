@@ -223,6 +223,7 @@ void add_diff(CLI::App& app, Exit& result) {
         ->expected(1, -1)
         ->trigger_on_parse(false);
     sub->add_option("--window", command->window, "Rows shown before and after the first deviation")
+        ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     sub->add_flag("--common", command->common, "Compare the columns that both have");
     sub->add_option("--report", command->page, "Draw both into this page, too")

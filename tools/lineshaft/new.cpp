@@ -63,6 +63,10 @@ std::string first_program(const std::string& name) {
 
 Exit execute(const NewCommand& command) {
     std::filesystem::path path = command.name;
+    if (!path.has_filename()) {
+        spdlog::error("'{}' names no file: lineshaft new shaft.yaml", command.name);
+        return Exit::wrong;
+    }
     if (path.extension() == ".yml") path.replace_extension();
     if (path.extension() != ".yaml") path += ".yaml";
     std::error_code unknown;
@@ -71,6 +75,7 @@ Exit execute(const NewCommand& command) {
         return Exit::wrong;
     }
     Diagnostics out;
+    check_outputs({path.string()}, {}, out);
     const std::string text = command.project.empty() ? first_program(path.stem().string())
                                                      : program_around(command.project, path, out);
     if (!out.empty() || !out.warnings().empty()) report(out, false);

@@ -294,14 +294,11 @@ void add_plot(CLI::App& app, Exit& result) {
         ->type_name("FILE")
         ->required();
     CLI::Option* signals =
-        sub->add_option("--signals", command->signals, "Draw these signals only: a.x,b.y")
-            ->type_name("NAMES")
-            ->delimiter(',');
-    sub->add_option("--path", command->path,
-                    "Draw one signal over another, with equal axes: x.position,y.position")
+        add_signals(*sub, "--signals", command->signals, "Draw these signals only: a.x,b.y")
+            ->type_name("NAMES");
+    add_signals(*sub, "--path", command->path,
+                "Draw one signal over another, with equal axes: x.position,y.position", 2)
         ->type_name("X,Y")
-        ->delimiter(',')
-        ->expected(2)
         ->excludes(signals);
     sub->add_option("--title", command->title, "Headline; else the program's title");
     sub->add_option("--width", command->width, "Of the picture, in pixels")

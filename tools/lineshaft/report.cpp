@@ -333,14 +333,11 @@ void add_report(CLI::App& app, Exit& result) {
     sub->add_option("-o,--output", command->output, "Write the page to this HTML file")
         ->type_name("FILE")
         ->required();
-    sub->add_option("--signals", command->signals, "Draw these signals only: a.x,b.y")
-        ->type_name("NAMES")
-        ->delimiter(',');
-    sub->add_option("--path", command->path,
-                    "Draw these two signals as a path: x.position,y.position")
-        ->type_name("X,Y")
-        ->delimiter(',')
-        ->expected(2);
+    add_signals(*sub, "--signals", command->signals, "Draw these signals only: a.x,b.y")
+        ->type_name("NAMES");
+    add_signals(*sub, "--path", command->path,
+                "Draw these two signals as a path: x.position,y.position", 2)
+        ->type_name("X,Y");
     sub->add_option("--circle", command->circle,
                     "Compare the path with this circle, in the path's unit; else with one that is "
                     "found in the path")

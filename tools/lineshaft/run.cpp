@@ -357,12 +357,11 @@ void add_run(CLI::App& app, Exit& result) {
     sub->add_option("--recording", command->recording,
                     "Play back what 'lineshaft serve' recorded, and end where that ends")
         ->type_name("FILE.yaml");
-    sub->add_option(
-           "--show", command->shown,
-           "Print what these are at the end: signals, texts, and blocks, structures and arrays "
-           "with all that they have: x.position,main")
-        ->type_name("SIGNALS")
-        ->delimiter(',');
+    add_signals(
+        *sub, "--show", command->shown,
+        "Print what these are at the end: signals, texts, and blocks, structures and arrays "
+        "with all that they have: x.position,main")
+        ->type_name("SIGNALS");
     sub->callback([command, &result] { result = execute(*command); });
 }
 

@@ -225,7 +225,9 @@ Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) 
 }
 
 Exit execute(TestCommand& command) {
-    if (!prepare(command) || !are_there(command.paths)) return Exit::wrong;
+    const bool is_ready =
+        prepare(command) && are_there(command.paths) && are_there(command.sources);
+    if (!is_ready) return Exit::wrong;
     if (!command.coverage.empty()) st::start_coverage();
     std::vector<TestFile> files;
     for (const std::string& path : command.paths)

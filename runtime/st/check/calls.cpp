@@ -93,6 +93,15 @@ std::string help_with_argument(Checking& c, std::string_view argument, const Rou
         name, full.substr(0, full.size() - name.size() - 1));
 }
 
+/// EN and ENO, which a FUNCTION may declare: a list without names leaves them out (6.6.1.5).
+bool is_enable(const Variable& variable) {
+    const bool is_input = variable.section == Section::input && variable.initial;
+    return variable.of && variable.of->kind == PouKind::function && variable.type &&
+           variable.type->kind == Kind::boolean && !variable.name.place.dialect().is_loose &&
+           ((is_input && same_name(variable.text, "en")) ||
+            (variable.section == Section::output && same_name(variable.text, "eno")));
+}
+
 Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std::size_t position) {
     const bool named = argument.is_named();
     const bool inner = c.is_in_test() && named && routine.has_instances();
@@ -103,6 +112,7 @@ Variable* find_parameter(Checking& c, Argument& argument, Routine& routine, std:
     if (outputs_last) std::stable_partition(variables.begin(), variables.end(), is_given);
     for (Variable* variable : variables) {
         if (!variable->is_parameter() && !inner) continue;
+        if (!named && is_enable(*variable)) continue;
         if (named ? same_name(variable->text, argument.name.text) : i == position) return variable;
         ++i;
     }

@@ -51,7 +51,8 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     check_classes(c);
     configure_programs(c);
     check_initial_values(c);
-    for (Routine& routine : c.checked.routines) check_body(c, routine);
+    for (std::size_t i = 0; i < c.checked.routines.size(); ++i)  // they become more
+        check_body(c, c.checked.routines[i]);
     write_deletions(c);
     if (out.empty()) write_serializations(c);
     tell_missing_libraries(c);

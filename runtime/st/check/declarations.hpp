@@ -124,6 +124,9 @@ Block beginnings(Checking& c, Routine& routine);
 void begin_parts_of_blocks(Checking& c);
 /// That method of a block; null: it has none.
 Routine* beginning_of_parts(const Type& block);
+/// A checked call that lets an instance begin, which is about to be copied; null: it has nothing to
+/// begin with that runs.
+Statement* begin_to_copy(Checking& c, const Expression& instance);
 
 // axes_of_tests.cpp
 

@@ -96,6 +96,18 @@ Variable* declare_global(Checking& c, const DeclarationBlock& block, const Decla
     return variable;
 }
 
+/// Both declarations say one type (6.5.2.2); a STRING may be declared without its length.
+void compare_types(Checking& c, const Declaration& external, const Variable& global) {
+    if (!global.type || global.type->kind == Kind::handle) return;
+    const Type* type = resolve(c, *external.type);
+    const bool are_texts = type && type->kind == Kind::text && global.type->kind == Kind::text;
+    if (!type || are_texts || same_type(*type, *global.type)) return;
+    c.fail(code::type_does_not_fit, external.type->place,
+           fmt::format("'{}' is {} in VAR_GLOBAL, not {}", external.name.text,
+                       describe(*global.type), describe(*type)),
+           "write the type that VAR_GLOBAL has");
+}
+
 /// A VAR_EXTERNAL means the VAR_GLOBAL of its name; where none is here it declares one, as those of
 /// a controller's modules, which other tools make.
 void declare_externals(Checking& c) {
@@ -103,7 +115,10 @@ void declare_externals(Checking& c) {
         for (const Declaration* declared : block.declarations) {
             const Token& name = declared->name;
             if (block.section != Section::external) continue;
-            if (const Variable* global = find_in(c.globals, name.text)) c.note(name.place, *global);
+            if (const Variable* global = find_in(c.globals, name.text)) {
+                c.note(name.place, *global);
+                compare_types(c, *declared, *global);
+            }
             if (c.globals.contains(name.text) || c.users.places.contains(name.text)) continue;
             const Type* type = resolve(c, *declared->type);
             if (!type || type->kind == Kind::handle) continue;

@@ -263,6 +263,14 @@ bool is_ambiguous(Checking& c, const Token& token, const Variable& variable) {
     return true;
 }
 
+/// Of a base, what that does not keep to itself.
+bool is_own_to_name(Checking& c, const Token& token, const Variable& variable) {
+    if (variable.access != Access::private_ || !variable.of) return true;
+    const Routine* block = c.routine && c.routine->owner ? c.routine->owner : c.routine;
+    while (block && block->pou != variable.of) block = block->base;
+    return !block || is_accessible(c, variable.access, *block, token);
+}
+
 /// A value of an enumeration with the attribute 'qualified_only', where the value is due.
 const Type* refuse_alone(Checking& c, const Expression& e, const Type& enumeration) {
     return c.fail(code::not_declared, e.place, fmt::format("'{}' is not declared", e.token.text),
@@ -339,6 +347,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return check(c, e, expected);
     }
     if (variable && is_ambiguous(c, token, *variable)) return nullptr;
+    if (variable && !is_own_to_name(c, token, *variable)) return nullptr;
     const bool is_for_object = expected && expected->kind == Kind::handle;
     if (variable && is_for_object && hides_object(token, *variable))
         return use_object(c, e, *object_type(c, *expected));

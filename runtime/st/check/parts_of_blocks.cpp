@@ -1,10 +1,12 @@
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/nodes.hpp"
+#include "runtime/st/check/statements.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
-constexpr std::string_view beginner = "FB_init.parts";
+constexpr std::string_view beginner = "FB_init.parts", beginner_of_copies = "FB_init.copies";
 
 /// Its FB_init is its own, and begins them.
 bool begins_parts(const Routine& block) {
@@ -13,16 +15,16 @@ bool begins_parts(const Routine& block) {
 }
 
 /// An empty method, which what the block and its bases begin with comes before.
-void add_beginning_of_parts(Checking& c, Routine& block) {
+void add_beginning(Checking& c, Routine& block, std::string_view name) {
     Pou& pou = c.tree.pous.emplace_back();
     pou.kind = PouKind::method;
     pou.name = block.pou->name;
-    pou.name.text = beginner;
+    pou.name.text = name;
     pou.place = block.pou->place;
-    Routine& made = c.make_routine(pou, fmt::format("{}.{}", block.name, beginner));
+    Routine& made = c.make_routine(pou, fmt::format("{}.{}", block.name, name));
     made.owner = &block;
     made.is_declared = true;
-    block.methods.emplace(beginner, &made);
+    block.methods.emplace(name, &made);
 }
 
 void begin_parts(Checking& c, Routine& block, std::unordered_set<const Routine*>& seen) {
@@ -40,10 +42,24 @@ void begin_parts(Checking& c, Routine& block, std::unordered_set<const Routine*>
         look_at(look_at, variable->type);
         has_parts |= is_constructed(c, variable->type) || is_followed(c, variable->type);
     }
-    if (has_parts && !begins_parts(block)) add_beginning_of_parts(c, block);
+    if (has_parts && !begins_parts(block)) add_beginning(c, block, beginner);
+}
+
+bool begins(const Routine* block) {
+    return block && (!block->begins.empty() || begins(block->base));
 }
 
 }  // namespace
+
+Statement* begin_to_copy(Checking& c, const Expression& instance) {
+    Routine& block = *instance.type->routine;
+    if (!begins(&block)) return nullptr;
+    if (!block.methods.contains(beginner_of_copies)) add_beginning(c, block, beginner_of_copies);
+    Expression* name = make_member(c, make_copy(c, instance), beginner_of_copies);
+    Statement* call = make_call_statement(c, make_call(c, instance, name, {}));
+    check(c, call);
+    return call;
+}
 
 Routine* beginning_of_parts(const Type& block) {
     return find_in(block.routine->methods, beginner);

@@ -336,14 +336,15 @@ void check_attempt(Checking& c, Statement& s) {
     const Type &to = *target->type, &from = *given->type;
     const bool fits = (to.kind == Kind::interface || refers_to_block(to)) &&
                       (is_of_block(from) || refers_to_block(from) || is_null(*given));
-    if (!fits)
+    const bool are_alike = to.is_reference() && same_type(to, from);  // nothing to find out
+    if (!fits && !are_alike)
         return (void)c.fail(
             code::type_does_not_fit, s.place,
             fmt::format("'?=' does not go with {} and {}", describe(to), describe(from)),
             "it gives a variable of an interface, or a reference to a block, what is of its type");
     s.op = Word::assign;
     s.target = target;
-    if (!check_target(c, *target) || is_null(*given)) return (void)coerce(c, given, to);
+    if (!check_target(c, *target) || !fits || is_null(*given)) return (void)coerce(c, given, to);
     s.value = attempted(c, given, to);
 }
 

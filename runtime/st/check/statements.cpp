@@ -165,6 +165,8 @@ void check_case(Checking& c, Statement*& slot) {
         return rewrite_case_of_texts(c, slot);
     Statement& s = *slot;
     if (type) type = select_by_numbers(c, s, *type);
+    if (type && type->kind == Kind::any_integer)
+        type = coerce(c, s.value, lint_type) ? &lint_type : nullptr;
     const bool fits =
         type && (type->kind == Kind::integer || type->is_bits() || type->kind == Kind::enumeration);
     if (type && !fits)
@@ -393,6 +395,17 @@ static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
     return derives && become_base(c, given, block);
 }
 
+/// What an instance begins with is there before it is copied, and is not made anew in the copy.
+static void begin_both(Checking& c, Statement*& s) {
+    Block all;
+    for (const Expression* instance : {s->target, s->value})
+        if (is_place(*instance) && instance->kind != E::self)
+            if (Statement* begin = begin_to_copy(c, *instance)) all.push_back(begin);
+    if (all.empty()) return;
+    all.push_back(s);
+    s = make_sequence(c, s->place, std::move(all));
+}
+
 void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
@@ -417,7 +430,7 @@ void check_assignment(Checking& c, Statement*& s) {
         return;
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     if (type->kind == Kind::block && s->op == Word::assign && is_given_whole(c, s->value, *type))
-        return;
+        return begin_both(c, s);
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));
     if (type->is_instance())

@@ -393,7 +393,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
         return type;
     }
     if (c.tree.lost.contains(name.text) || may_be_elsewhere(c, name.place)) return nullptr;
-    std::string_view instead = instead_of_type(bare);
+    std::string_view instead = instead_of_type(bare, name.place.dialect().vendor);
     if (instead.empty()) instead = c.catalog.instead_of(bare);
     if (!instead.empty())
         return c.fail(code::not_supported, name.place,

@@ -242,7 +242,10 @@ void write_loop(Writing& w, const Statement& s) {
         w.jump(Op::jump, 0, 0, w.loops.back().exits);
         w.land(again);
     }
-    if (!is_while || !repeat_test(w, start, first)) w.put(Op::repeat, 0, 0, start);
+    if (is_while && repeat_test(w, start, first))
+        w.put(Op::repeat, 0, 0, w.next() + 1);  // the last pass counts as those before it do
+    else
+        w.put(Op::repeat, 0, 0, start);
     w.land(w.loops.back().exits);
     w.cover_branch(s, 1);
     w.loops.pop_back();

@@ -114,6 +114,11 @@ std::string Failed::what() const {
         default:
             break;
     }
+    if (wanted() == found() && assertion_.found->is_date()) {
+        const auto more = static_cast<std::int64_t>(word(stop_.a) - word(stop_.b));
+        return fmt::format("expected {}, found {} and {} {}", wanted(), found(),
+                           time_literal(more < 0 ? -more : more), more < 0 ? "less" : "more");
+    }
     const auto exact = [&](std::uint32_t slot) { return std::bit_cast<double>(word(slot)); };
     const bool hides_digits =
         wanted() == found() && assertion_.found->is_real() && std::isfinite(exact(stop_.a));

@@ -266,17 +266,24 @@ std::string of_base(const Routine& block, const Variable& variable) {
     return is_hidden ? fmt::format("{}.", variable.of->name.text) : std::string();
 }
 
+/// `@PATH := '\/Axes'`, which CoDeSys 2.3 writes before a block for itself.
+static bool is_property_of_export(std::string_view line) {
+    return line.starts_with('@') && line.find(":=") != line.npos;
+}
+
 std::string text_of_comments(std::string_view written) {
-    constexpr std::string_view marks = "(*/) \t\r\n";
+    constexpr std::string_view marks = "(*/) \t\r\n", blanks = " \t\r";
     std::string text;
     for (std::size_t begin = 0; begin < written.size();) {
         const std::size_t end = std::min(written.find('\n', begin), written.size());
         std::string_view line = written.substr(begin, end - begin);
         begin = end + 1;
         line.remove_prefix(std::min(line.find_first_not_of(marks), line.size()));
+        if (is_property_of_export(line)) continue;
+        line = line.substr(0, line.find_last_not_of(blanks) + 1);
         const bool is_closed =
             line.ends_with("*)") || line.ends_with("*/") || line.ends_with("*/)");
-        const std::size_t last = line.find_last_not_of(is_closed ? marks : " \t\r");
+        const std::size_t last = line.find_last_not_of(is_closed ? marks : blanks);
         line = line.substr(0, last == std::string_view::npos ? 0 : last + 1);
         if (!text.empty() && !line.empty()) text += ' ';
         text += line;

@@ -26,8 +26,11 @@ constexpr Instead types_of_vendors[] = {
      "trcv tsend_c trcv_c tusend turcv ",
      "leave the connection out: nobody is at its other end here; a FUNCTION_BLOCK of this name "
      "with its outputs stands for it"},
-    {" counter ", "declare an instance of CTU, CTD or CTUD"},
-    {" timer ", "declare an instance of TON, TOF or TP"}};
+};
+
+/// Elsewhere a block of the user's own may have such a name.
+constexpr Instead types_of_s7[] = {{" counter ", "declare an instance of CTU, CTD or CTUD"},
+                                   {" timer ", "declare an instance of TON, TOF or TP"}};
 
 constexpr Instead functions_of_vendors[] = {
     {" sizeof ", "declare the size as a constant"},
@@ -86,8 +89,10 @@ std::string_view instead_in(std::span<const Instead> rows, std::string_view name
 
 }  // namespace
 
-std::string_view instead_of_type(std::string_view name) {
-    return instead_in(types_of_vendors, name);
+std::string_view instead_of_type(std::string_view name, Vendor vendor) {
+    const std::string_view of_s7 =
+        vendor == Vendor::siemens ? instead_in(types_of_s7, name) : std::string_view();
+    return of_s7.empty() ? instead_in(types_of_vendors, name) : of_s7;
 }
 
 std::string_view instead_of_function(std::string_view name) {

@@ -99,6 +99,23 @@ TEST_CASE("a part in the light barrier is counted once over warm restarts", "[re
     }
 }
 
+TEST_CASE("retained values in one line are those of the file", "[retain]") {
+    const Folder folder;
+    Loaded first = load(folder);
+    run_on(first, folder);
+    const std::string line = retained_line(folder / "line.retain");
+    CHECK(line.find('\n') == std::string::npos);
+    Loaded by_file = load(folder), by_line = load(folder);
+    Diagnostics out;
+    const int count = read_retained(folder / "line.retain", by_file.linked.machine, out);
+    CHECK(count > 0);
+    CHECK(take_retained(line, by_line.program.file, by_line.linked.machine, out) == count);
+    CHECK(out.empty());
+    for (const char* signal : {"parts.cv", "delay.et", "job.inner.count", "keeper.scans"})
+        CHECK(value_of(by_file, signal) == value_of(by_line, signal));
+    CHECK(retained_line(folder / "none.retain").empty());
+}
+
 TEST_CASE("a retained counter's value alone counts the part again", "[retain]") {
     const Folder folder;
     for (std::int64_t restart = 1; restart <= 3; ++restart) {

@@ -221,7 +221,7 @@ void Simulation::serve() {
     executive.add(watcher);
     const std::int64_t syncs[] = {RecordSync::each, 10 * millisecond, RecordSync::none};
     const auto sync = static_cast<std::size_t>(world_.random(std::ssize(syncs)));
-    RecordingWriter recording(world_, "recording.yaml", "program.yaml", "0123456789abcdef", false,
+    RecordingWriter recording(world_, "recording.yaml", {"program.yaml", "0123456789abcdef"}, false,
                               {syncs[sync]});
     if (!recording.error().empty()) return;  // refused: nobody could come
     const double speed = world_.happens(0.5) ? 1 : 10;

@@ -131,8 +131,10 @@ void Cache::keep(const std::string& made, std::string_view key) const {
     whole << key << text_hash(bytes);
     whole.close();
     if (!whole || ::chmod(made.c_str(), 0600) != 0 ||
-        ::rename(made.c_str(), path(named(key)).c_str()) != 0)
+        ::rename(made.c_str(), path(named(key)).c_str()) != 0) {
+        ::unlink(made.c_str());
         throw NoCompiledCode(fmt::format("cannot write {}", folder_));
+    }
     delete_unused();
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
+#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <fstream>
@@ -230,18 +231,28 @@ class Compiling {
     void compile(const Job& job) {
         const std::string own = cache_->path(fmt::format("{:010}", ::getpid())),
                           source = own + ".cpp", made = own + ".so", log = own + ".log";
-        std::ofstream(source) << job.text;
-        const bool fine = run(source, made, log);
+        std::string wrong;
+        std::ofstream written(source);
+        if (written << job.text; !written.flush())
+            wrong = fmt::format("cannot write {}: {}", source, std::strerror(errno));
+        else if (const std::string end = run(source, made, log); !end.empty())
+            wrong = fmt::format("{} failed: {}", compiler_.words[0], said(log, end));
+        for (const std::string& file : {source, log}) ::unlink(file.c_str());
+        if (wrong.empty()) return cache_->keep(made, job.key);
+        ::unlink(made.c_str());
+        throw NoCompiledCode(wrong);
+    }
+
+    /// The first line of what the compiler has said, or, where it said nothing, how it ended.
+    static std::string said(const std::string& log, const std::string& end) {
         std::string first;
         std::ifstream text(log);
         std::getline(text, first);
-        for (const std::string& file : {source, log}) ::unlink(file.c_str());
-        if (fine) return cache_->keep(made, job.key);
-        ::unlink(made.c_str());
-        throw NoCompiledCode(fmt::format("{} failed: {}", compiler_.words[0], first));
+        return first.empty() ? end : first;
     }
 
-    bool run(const std::string& source, const std::string& made, const std::string& log) {
+    /// How it ended; empty: well.
+    std::string run(const std::string& source, const std::string& made, const std::string& log) {
         std::vector<std::string> words = compiler_.words;
         words.insert(words.end(), std::begin(flags), std::end(flags));
         words.insert(words.end(), {"-o", made, source});
@@ -258,13 +269,14 @@ class Compiling {
         const int error =
             ::posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
         posix_spawn_file_actions_destroy(&actions);
-        if (error != 0) return false;
+        if (error != 0) return std::strerror(error);
         process_ = process;
         int status = 0;
         while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
         }
         process_ = 0;
-        return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+        if (!WIFEXITED(status)) return fmt::format("signal {}", WTERMSIG(status));
+        return WEXITSTATUS(status) == 0 ? "" : fmt::format("exit code {}", WEXITSTATUS(status));
     }
 
     void (*tell_)(const std::string&);
