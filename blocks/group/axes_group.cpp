@@ -19,9 +19,11 @@ std::span<const Field> AxesGroup::fields() {
         output("state", &G::state, "", "of PLCopen").one_of(group_state_names),
         output("error", &G::error, "", "the group has stopped; MC_GroupReset ends it"),
         output("error_id", &G::error_id, "", "why").one_of(motion_error_names),
-        output("distance", &G::distance, "{unit}",
-               "along the path since it began, or, at standstill, of all of the last one"),
-        output("velocity", &G::velocity, "{unit}/s", "along the path"),
+        output(
+            "distance", &G::distance, "{unit}",
+            "way of the first three axes along the path since it began, or, at standstill, of all "
+            "of the last one"),
+        output("velocity", &G::velocity, "{unit}/s", "of that way: 0 where rotary axes move alone"),
         output("acceleration", &G::acceleration, "{unit}/s^2", "along the path"),
         output("jerk", &G::jerk, "{unit}/s^3", "along the path"),
     };
@@ -62,7 +64,7 @@ void AxesGroup::run(const Context& context, double dt) {
     }
     const PathMotion motion = path.advance(ring(), left);
     lead(context, motion);
-    publish(motion);
+    publish(motion.way);
     if (path.lost) {
         fail(context, MotionError::not_finite);
         path.clear();
@@ -126,7 +128,7 @@ void AxesGroup::come_to_stand(const Context& context) {
     path.clear();
     end_point = position;
     braking = interrupted = 0;
-    publish({.path = {.position = distance}});
+    publish({.position = distance});
     if (holder.exists() && holder.told_end == 0) tell(context, holder, Progress::done);
     holder.told_end = 1;
     if (holder.holds == 0) holder = {};
@@ -142,11 +144,11 @@ void AxesGroup::release(const Context& context) {
     following = 0;
 }
 
-void AxesGroup::publish(const PathMotion& motion) {
-    distance = motion.path.position;
-    velocity = motion.path.velocity;
-    acceleration = motion.path.acceleration;
-    jerk = motion.path.jerk;
+void AxesGroup::publish(const MotionState& way) {
+    distance = way.position;
+    velocity = way.velocity;
+    acceleration = way.acceleration;
+    jerk = way.jerk;
 }
 
 bool AxesGroup::has_unlaid(const Context& context) const {

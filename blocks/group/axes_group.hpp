@@ -110,7 +110,7 @@ struct AxesGroup {
     void look_at_moves(const Context& context);
     void come_to_stand(const Context& context);
     void release(const Context& context);
-    void publish(const PathMotion& motion);
+    void publish(const MotionState& way);
     bool has_unlaid(const Context& context) const;
 
     // axes_group_jobs.cpp: commands are taken up, told how far they are, and ended.

@@ -215,7 +215,7 @@ void AxesGroup::leave_path(const Context& context) {
     path.clear();
     end_point = position;
     interrupted = 0;
-    publish({.path = {.position = distance}});
+    publish({.position = distance});
     release(context);
     state = GroupState::standby;
 }

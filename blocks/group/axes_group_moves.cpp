@@ -52,8 +52,7 @@ PathFault curve_of(const GroupRequest& request, const PathVector& from, double r
     const PathVector to = is_relative(command) ? sum(from, request.target) : request.target;
     if (command == move_circular_absolute || command == move_circular_relative)
         return arc_of(request, from, to, rounding, out);
-    const bool direct = command == move_direct_absolute || command == move_direct_relative;
-    return line_to(from, to, out, direct ? most_path_axes : path_space);
+    return line_to(from, to, out, path_space);
 }
 
 PathBlend blend_of(BufferMode mode) {
@@ -67,9 +66,7 @@ bool is_free(const GroupRequest& request, const PathCurve& curve) {
     using enum GroupCommand;
     if (request.command == move_direct_absolute || request.command == move_direct_relative)
         return true;
-    for (std::size_t i = 0; i < path_space; ++i)
-        if (curve.share(i) != 0) return false;
-    return true;
+    return !curve.is_in_space();
 }
 
 }  // namespace

@@ -72,14 +72,17 @@ std::vector<Field> coordinates(std::string_view name, PathVector GroupRequest::*
 }
 
 std::vector<Field> dynamics() {
-    return {input("Velocity", &B::pins, &GroupRequest::velocity, "{AxesGroup}/s",
-                  "along the path, greatest; below 0: the group's own"),
-            input("Acceleration", &B::pins, &GroupRequest::acceleration, "{AxesGroup}/s^2",
-                  "limit along the path; below 0: the group's own"),
-            input("Deceleration", &B::pins, &GroupRequest::deceleration, "{AxesGroup}/s^2",
-                  "limit; the lesser of both counts both ways; below 0: as Acceleration"),
-            input("Jerk", &B::pins, &GroupRequest::jerk, "{AxesGroup}/s^3",
-                  "limit along the path; below 0: the group's own")};
+    return {
+        input(
+            "Velocity", &B::pins, &GroupRequest::velocity, "{AxesGroup}/s",
+            "of the first three axes along the path, greatest; rotary axes follow, and where they "
+            "move alone only their own limits count; below 0: the group's own"),
+        input("Acceleration", &B::pins, &GroupRequest::acceleration, "{AxesGroup}/s^2",
+              "limit, as Velocity; below 0: the group's own"),
+        input("Deceleration", &B::pins, &GroupRequest::deceleration, "{AxesGroup}/s^2",
+              "limit; the lesser of both counts both ways; below 0: as Acceleration"),
+        input("Jerk", &B::pins, &GroupRequest::jerk, "{AxesGroup}/s^3",
+              "limit, as Velocity; below 0: the group's own")};
 }
 
 std::vector<Field> braking() {

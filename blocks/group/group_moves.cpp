@@ -6,6 +6,9 @@ namespace lineshaft {
 
 namespace {
 
+constexpr std::string_view target =
+    "target of the axis; of a modulo axis in the period that it shows";
+
 std::vector<Field> positions(std::string_view name, std::string_view doc) {
     return group_pin::coordinates(name, &GroupRequest::target, most_path_axes, doc);
 }
@@ -17,11 +20,11 @@ std::vector<Field> circle_pins(std::string_view to) {
             .one_of(circle_mode_names)};
     const auto auxiliary =
         group_pin::coordinates("AuxPoint", &GroupRequest::auxiliary, path_space,
-                               "a point of the arc, its centre, or the tip of a vector upright on "
-                               "its plane, of the radius' length");
-    const auto target = positions("EndPoint", to);
+                               "a point of the arc, its centre, or the tip of a vector from the "
+                               "start, upright on its plane and as long as the radius");
+    const auto end = positions("EndPoint", to);
     fields.insert(fields.end(), auxiliary.begin(), auxiliary.end());
-    fields.insert(fields.end(), target.begin(), target.end());
+    fields.insert(fields.end(), end.begin(), end.end());
     fields.push_back(input("PathChoice", &B::pins, &GroupRequest::choice, "",
                            "seen from where the vector points to, or the third axis; not of "
                            "mcBorder")
@@ -36,8 +39,8 @@ namespace group_kinds {
 using namespace group_pin;
 
 std::span<const Field> move_absolute_fields() {
-    static const auto fields = table(
-        {positions("Position", "target of the axis"), dynamics(), coordinate_system(), blending()});
+    static const auto fields =
+        table({positions("Position", target), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
@@ -49,7 +52,7 @@ std::span<const Field> move_relative_fields() {
 
 std::span<const Field> circle_absolute_fields() {
     static const auto fields =
-        table({circle_pins("target of the axis"), dynamics(), coordinate_system(), blending()});
+        table({circle_pins(target), dynamics(), coordinate_system(), blending()});
     return fields;
 }
 
@@ -61,7 +64,7 @@ std::span<const Field> circle_relative_fields() {
 
 std::span<const Field> direct_absolute_fields() {
     static const auto fields =
-        table({positions("Position", "target of the axis"), coordinate_system(), blending()});
+        table({positions("Position", target), coordinate_system(), blending()});
     return fields;
 }
 

@@ -254,6 +254,11 @@ void append_stretch(Path& path, std::span<PathPiece> ring, const PathLimit& box,
     ++path.stretches;
 }
 
+/// Of the first three axes, to the end of a piece [u].
+double way_behind(const PathPiece& piece) {
+    return piece.way + piece.curve.way_at(piece.curve.length).way;
+}
+
 void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
                   const PathLimits& limits, const PathLimit& box, double joint) {
     PathPiece& piece = piece_at(ring, path.count);
@@ -261,6 +266,7 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
     piece.limits = limits;
     for (std::size_t i = 0; i < most_path_axes; ++i) piece.bounds[i] = bound_of(curve, i);
     piece.begin = path.total;
+    piece.way = path.count > 0 ? way_behind(piece_at(ring, path.count - 1)) : 0;
     ++path.count;
     append_stretch(path, ring, box, joint);
 }
@@ -344,9 +350,13 @@ PathMotion motion_of(const Path& path, std::span<const PathPiece> ring, const Mo
     if (path.count == 0) return out;
     const bool over = path.finished();
     const PathPiece& piece = piece_at(ring, over ? path.first - 1 : path.first);
-    const PathPoint x = piece.curve.at(over ? piece.curve.length : m.position - piece.begin);
+    const double s = over ? piece.curve.length : m.position - piece.begin;
+    const PathPoint x = piece.curve.at(s);
+    const PathCurve::Way way = piece.curve.way_at(s);
     const double v = m.velocity, a = m.acceleration, j = m.jerk;
     out.path = m;
+    out.way = {piece.way + way.way, way.slope * v, way.slope * a + way.bend * v * v,
+               way.slope * j + 3 * way.bend * v * a + way.twist * v * v * v};
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         out.position[i] = x.position[i];
         out.velocity[i] = x.tangent[i] * v;

@@ -172,6 +172,22 @@ PathPoint PathCurve::at(double s) const {
     return out;
 }
 
+bool PathCurve::is_in_space() const {
+    for (std::size_t i = 0; i < path_space; ++i)
+        if (share(i) != 0) return true;
+    return false;
+}
+
+PathCurve::Way PathCurve::way_at(double s) const {
+    s = std::fmin(std::fmax(s, 0), length);
+    if (kind != PathCurveKind::corner) return is_in_space() ? Way{s, 1, 0, 0} : Way{};
+    const double begins = size_of(in_space(u)) > 0 ? 1 : 0, ends = size_of(in_space(w)) > 0 ? 1 : 0;
+    const double turn = ends - begins, t = s / length;
+    return {begins * s + turn * length * (t * t * t * (1 - 0.5 * t)),
+            begins + turn * (t * t * (3 - 2 * t)), turn * (6 * t * (1 - t) / length),
+            turn * ((6 - 12 * t) / (length * length))};
+}
+
 double PathCurve::share(std::size_t axis) const {
     if (kind == PathCurveKind::spline) return bound_of(*this, axis).tangent;
     if (kind == PathCurveKind::line) return std::abs(u[axis]);

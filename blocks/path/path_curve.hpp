@@ -54,6 +54,16 @@ struct PathCurve {
     /// s beyond an end is taken as that end.
     PathPoint at(double s) const;
 
+    /// One of the first three axes moves.
+    bool is_in_space() const;
+
+    /// The way of the first three axes from its start on, 0 where none of them moves, and that of a
+    /// corner by its vertex; with its derivatives by s.
+    struct Way {
+        double way = 0, slope = 0, bend = 0, twist = 0;
+    };
+    Way way_at(double s) const;
+
     /// The greatest size that axis i's part of the tangent can have, on any such curve of this
     /// plane: |u_i| of a line, sqrt(u_i^2 + w_i^2) of an arc, the greater of both of a corner; of a
     /// spline no less than that.

@@ -34,6 +34,7 @@ struct PathPiece {
     PathLimits limits;  ///< of a corner the lesser ones of both its neighbours
     std::array<PathBound, most_path_axes> bounds{};  ///< of the curve
     double begin = 0;                                ///< along the path [u]
+    double way = 0;  ///< of the first three axes, from the start of the path to where it begins [u]
     PathStretch stretch;
 
     double end() const { return begin + curve.length; }

@@ -269,7 +269,9 @@ void PathPlanner::lay(std::string& rows) {
 void PathPlanner::append(const PathCurve& curve) {
     PathJoint joint;
     joint.distance = PathJoint::any, joint.deviation = options_.deviation;
-    fault_ = path_.append(ring_, curve, limits_, joint);
+    PathLimits limits = limits_;
+    if (!curve.is_in_space()) limits.path = no_path_limit;
+    fault_ = path_.append(ring_, curve, limits, joint);
 }
 
 /// To where a piece is entered, or to the end: from sample to sample.
@@ -295,7 +297,7 @@ void PathPlanner::write_sample(double time, std::string& rows) const {
     const PathMotion m = path_.now(ring_);
     rows += fmt::format("{}", name_.value_or(1));
     append_number(rows, time);
-    for (const double x : {m.path.position, m.path.velocity, m.path.acceleration, m.path.jerk})
+    for (const double x : {m.way.position, m.way.velocity, m.way.acceleration, m.way.jerk})
         append_number(rows, x);
     for (const double x : m.position) append_number(rows, x);
     rows += '\n';
@@ -312,7 +314,7 @@ void PathPlanner::end(std::string& rows) {
     if (options_.every == 0) {
         rows += fmt::format("{},{},{},{},{}", *name_, ok ? 1 : 0, why, points_, path_.count);
         if (ok) {
-            append_number(rows, path_.total);
+            append_number(rows, path_.now(ring_).way.position);
             append_number(rows, duration_);
         } else {
             rows += ",,";
