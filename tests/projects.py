@@ -1450,12 +1450,12 @@ def check_apax():
     write("package/src/main.st", "PROGRAM Main\nVAR c : Counter; END_VAR\nc();\nEND_PROGRAM\n")
     run("check", "package")
     run("new", "of_package", "--from", "package")
-    write("named/apax.yml", "name: named\n")
-    write("named/src/main.st", "TYPE\nMachineState : (Off, Run) := Run;\nEND_TYPE\nPROGRAM Main\nVAR_EXTERNAL machineState : MachineState; END_VAR\n"
+    write("ax_named/apax.yml", "name: ax_named\n")
+    write("ax_named/src/main.st", "TYPE\nMachineState : (Off, Run) := Run;\nEND_TYPE\nPROGRAM Main\nVAR_EXTERNAL machineState : MachineState; END_VAR\n"
           "VAR is_run : BOOL; cam : REF_TO TO_CamBase; encoder : TO_ExternalEncoder; axis : REF_TO TO_SynchronousAxis; turns : BOOL; END_VAR\n"
           "is_run := machineState = MachineState#Run;\nIF axis <> NULL THEN turns := axis^.Modulo.Enable; END_IF;\nEND_PROGRAM\n"
           "CONFIGURATION C\nTASK T1 (Interval := T#10ms, Priority := 1);\nPROGRAM P1 WITH T1 : Main;\nVAR_GLOBAL machineState : MachineState; END_VAR\nEND_CONFIGURATION\n")
-    run("new", "named_state", "--from", "named")
+    run("new", "named_state", "--from", "ax_named")
     write("named_state.yaml", (work / "named_state.yaml").read_text() + "expect:\n  - {at: end, Main.is_run: true}\n")
     run("run", "named_state.yaml", "--quiet")
 
