@@ -242,9 +242,10 @@ void read_configuration(const Reading& to, const std::shared_ptr<const SourceFil
     while (!p.is(Word::end_of_file)) {
         if (p.is(Word::configuration_) || p.says("end_configuration"))
             is_within = p.is(Word::configuration_);
-        if (p.is_name() && p.says("task") && p.is_name(1) && p.next(2).word == Word::open) {
+        const bool is_task = p.is_name() && p.says("task") && p.is_name(1);
+        if (is_task) declared.emplace_back(p.next().text);
+        if (is_task && p.next(2).word == Word::open) {
             tasks.push_back(read_task(p, resource));
-            declared.push_back(tasks.back().name.text);
         } else if (p.is(Word::program_) && is_within) {
             read_program(p, resource, configuration, tasks);
         } else {
