@@ -56,7 +56,7 @@ def check_refusals():
     said = run("new", "mine", code=2)
     assert "'mine.yaml' is there already; name another file" in said, said
     assert (work / "mine.yaml").read_bytes() == before
-    said = run("new", "nowhere/mine", code=3)
+    said = run("new", "nowhere/mine", code=2)
     assert "nowhere/mine.yaml" in said and not (work / "nowhere").exists(), said
     said = run("new", "around", "--from", "nothing", code=2)
     assert "nothing" in said and not (work / "around.yaml").exists(), said

@@ -28,7 +28,7 @@ void CommandBlock::send(const Scan& now, const Context& context) {
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
     const bool is_free = job.in == JobPlace::no_list;
-    if (updating && is_free && differ(pins, job.request) && is_at_work(context))
+    if (updating && is_free && differ(updated(), job.request) && is_at_work(context))
         update(now, context);
 }
 
@@ -57,10 +57,17 @@ void CommandBlock::start(const Scan& now, const Context& context) {
     context.instance<Axis>(axis).send(context, now, job);
 }
 
+/// What ContinuousUpdate asks for. The BufferMode stays that by which the command has begun.
+Request CommandBlock::updated() const {
+    Request asked = pins;
+    asked.mode = job.request.mode;
+    return asked;
+}
+
 /// Pins that are no numbers change nothing.
 void CommandBlock::update(const Scan& now, const Context& context) {
     if (check() != MotionError::none) return;
-    job.request = pins;
+    job.request = updated();
     context.instance<Axis>(axis).send(context, now, job);
 }
 

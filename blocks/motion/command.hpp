@@ -60,6 +60,7 @@ struct CommandBlock : CommandState {
 
     /// Whether the axis carries it out.
     bool is_at_work(const Context& context) const;
+    Request updated() const;
     /// Puts the pins into the job and the job into the axis' inbox: as a new one, or as a change.
     void start(const Scan& now, const Context& context);
     void update(const Scan& now, const Context& context);
