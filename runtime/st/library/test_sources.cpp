@@ -154,10 +154,27 @@ void SourcePool::add(const std::shared_ptr<const SourceFile>& file) {
     const auto is_known = [&](const Entry& entry) { return entry.file->is_same_text(*file); };
     if (std::ranges::any_of(entries_, is_known) || is_test_file(file)) return;
     entries_.push_back(entry_of(file));
+    note(entries_.size() - 1);
+}
+
+void SourcePool::note(std::size_t entry) {
+    const auto note_in = [&](auto& index, const std::string& name) {
+        std::vector<std::size_t>& declaring = index[name];
+        if (declaring.empty() || declaring.back() != entry) declaring.push_back(entry);
+    };
+    for (const auto& [name, full] : entries_[entry].types) note_in(with_type_, name);
+    for (const std::string& name : entries_[entry].values) note_in(with_value_, name);
+}
+
+void SourcePool::leave_out(const std::function<bool(const Entry&)>& is_left) {
+    if (std::erase_if(entries_, is_left) == 0) return;
+    with_type_.clear();
+    with_value_.clear();
+    for (std::size_t i = 0; i < entries_.size(); ++i) note(i);
 }
 
 void SourcePool::replace(const std::shared_ptr<const SourceFile>& file) {
-    std::erase_if(entries_, [&](const Entry& entry) { return entry.file->is_same_text(*file); });
+    leave_out([&](const Entry& entry) { return entry.file->is_same_text(*file); });
     add(file);
 }
 
@@ -170,7 +187,7 @@ void SourcePool::leave_out_tcunit() {
              folder = folder.parent_path())
             if (std::filesystem::exists(folder / "TcUnit.plcproj")) folders.insert(folder);
     }
-    std::erase_if(entries_, [&](const Entry& entry) {
+    leave_out([&](const Entry& entry) {
         const auto path = std::filesystem::absolute(entry.file->path);
         return std::ranges::any_of(folders, [&](const std::filesystem::path& folder) {
             return std::ranges::mismatch(folder, path).in1 == folder.end();
@@ -189,9 +206,14 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
     };
     // Of a project of another tool `Planner.Otg` is Otg, where Planner is another project.
     const std::size_t point = user.file->excerpts.empty() ? name.npos : name.find('.');
-    for (const Entry& entry : entries_) {
-        const auto bare =
-            point == name.npos ? entry.types.end() : entry.types.find(name.substr(point + 1));
+    const std::string plain = point == name.npos ? name : name.substr(point + 1);
+    std::set<std::size_t> declaring;
+    for (const std::string& called : {name, plain})
+        if (const auto it = with_type_.find(called); it != with_type_.end())
+            declaring.insert(it->second.begin(), it->second.end());
+    for (const std::size_t place : declaring) {
+        const Entry& entry = entries_[place];
+        const auto bare = point == name.npos ? entry.types.end() : entry.types.find(plain);
         if (bare != entry.types.end() && bare->first == bare->second) add(bare->second, entry);
         const auto [first, last] = entry.types.equal_range(name);
         for (auto it = first; it != last; ++it) {
@@ -210,10 +232,13 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
 const SourcePool::Entry* SourcePool::nearest_value(const std::string& name,
                                                    const std::string& to) const {
     const Entry* found = nullptr;
-    for (const Entry& entry : entries_)
-        if (entry.values.contains(name) &&
-            (!found || nearness(entry.file->path, to) > nearness(found->file->path, to)))
+    const auto declaring = with_value_.find(name);
+    if (declaring == with_value_.end()) return nullptr;
+    for (const std::size_t place : declaring->second) {
+        const Entry& entry = entries_[place];
+        if (!found || nearness(entry.file->path, to) > nearness(found->file->path, to))
             found = &entry;
+    }
     return found;
 }
 

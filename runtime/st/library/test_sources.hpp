@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "runtime/source/diagnostic.hpp"
@@ -51,6 +53,9 @@ class SourcePool {
         std::set<std::string> used_types;
     };
     static Entry entry_of(const std::shared_ptr<const SourceFile>& file);
+    void note(std::size_t entry);
+    /// Leaves out those of which `is_left` is true.
+    void leave_out(const std::function<bool(const Entry&)>& is_left);
     void follow(std::vector<const Entry*>& chosen, const std::string& to) const;
     static std::vector<std::shared_ptr<const SourceFile>> files_of(
         const std::vector<const Entry*>& chosen);
@@ -59,6 +64,8 @@ class SourcePool {
     const Entry* nearest_value(const std::string& name, const std::string& to) const;
 
     std::vector<Entry> entries_;
+    /// Which of them declare a type or a value of that name, from the first on.
+    std::unordered_map<std::string, std::vector<std::size_t>> with_type_, with_value_;
 };
 
 }  // namespace lineshaft::st
