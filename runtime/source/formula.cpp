@@ -87,7 +87,8 @@ class Evaluator {
         result_.amount = sum();
         skip_blanks();
         if (at_ < text_.size())
-            fail(fmt::format("'{}' is not expected here", text_.substr(at_, 1)));
+            fail(fmt::format("'{}' is not expected here",
+                             text_.substr(at_, first_character(text_.substr(at_)).bytes)));
         return result_;
     }
 

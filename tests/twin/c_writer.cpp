@@ -586,8 +586,9 @@ class CWriter {
         }
         if (target.is_character()) {
             const std::string c = value(*s.value), in = "&" + place(*target.operands[0]);
-            return put("twin_set_character({}, {}, {}, {});", in, value(*target.arguments[0].value),
-                       c, line_);
+            return put("twin_set_character({}, {}, {}, {}, {});", in,
+                       value(*target.arguments[0].value), c, target.operands[0]->type->length,
+                       line_);
         }
         assign(place(target), *target.type, *s.value);
     }
@@ -1007,8 +1008,8 @@ class CWriter {
         return made(to, x);
     }
 
-    /// In ns as an integer of 64 bits, and an LTIME as a real number. Else TIME and TOD in ms, DATE
-    /// and DT in s, DATE in 16 bits in days since 1990.
+    /// In ns as an integer of 64 bits, and LTIME and its like as any number. Else TIME and TOD in
+    /// ms, DATE and DT in s, DATE in 16 bits in days since 1990.
     std::string convert_time(const std::string& x, const Type& from, const Type& to) {
         if (from.is_time() && to.is_time()) {
             if (from.kind != Kind::moment || to.kind == Kind::moment) return x;
@@ -1018,10 +1019,9 @@ class CWriter {
         if (to.kind == Kind::boolean) return made(to, x + " != 0");
         const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
         const bool is_date = time.kind == Kind::date, in_days = is_date && number.bits == 16;
-        const bool in_ns = number.is_real() && time.counts_ns;
         const char* const unit = in_days                                ? "86400000000000"
+                                 : time.counts_ns                       ? "1"
                                  : is_date || time.kind == Kind::moment ? "1000000000"
-                                 : in_ns                                ? "1"
                                                                         : "1000000";
         if (from.is_real()) return rounded(to, fmt::format("(f64){} * {}.0", x, unit));
         if (to.is_real()) return made(to, fmt::format("(f64){} / {}.0", x, unit));

@@ -129,10 +129,13 @@ u8 twin_character(const void* from, i64 room, i64 place, int line) {
     return place > as_text(from)->length ? 0 : (u8)as_text(from)->c[place - 1];
 }
 
-void twin_set_character(void* to, i64 place, u8 c, int line) {
-    if (place < 1 || place > as_text(to)->length) twin_fault(array_bounds, line);
+/* The character behind the last one lengthens the text. */
+void twin_set_character(void* to, i64 place, u8 c, i64 most, int line) {
+    const int appends = place == as_text(to)->length + 1 && place <= most;
+    if (!appends && (place < 1 || place > as_text(to)->length)) twin_fault(array_bounds, line);
     ((text*)to)->c[place - 1] = (char)c;
-    if (!c) ((text*)to)->length = place - 1;
+    if (appends) ((text*)to)->length = place;
+    else if (!c) ((text*)to)->length = place - 1;
 }
 
 u64 twin_to_bcd(u64 value, int digits, int line) {

@@ -64,7 +64,7 @@ void twin_real(result* to, f64 value);
 void twin_single(result* to, f32 value);
 i64 twin_clock(i64 moment);
 u8 twin_character(const void* from, i64 room, i64 place, int line);
-void twin_set_character(void* to, i64 place, u8 c, int line);
+void twin_set_character(void* to, i64 place, u8 c, i64 most, int line);
 u64 twin_to_bcd(u64 value, int digits, int line);
 i64 twin_read_integer(const void* from, int line);
 f64 twin_read_real(const void* from, int line);

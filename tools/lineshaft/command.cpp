@@ -151,7 +151,8 @@ Exit report(const Diagnostics& diagnostics, bool json) {
     auto list = nlohmann::ordered_json::array();
     for (const Diagnostic& d : diagnostics.empty() ? diagnostics.warnings() : diagnostics.list())
         list.push_back(to_json(d));
-    fmt::print("{}\n", nlohmann::ordered_json{{"diagnostics", list}}.dump(2));
+    const nlohmann::ordered_json all{{"diagnostics", list}};
+    fmt::print("{}\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     return exit;
 }
 
