@@ -246,10 +246,7 @@ class Lexer {
         const std::string_view text = text_.substr(start_, at_ - start_);
         const bool after_dot = is_after_dot();
         if (peek() == '#') return read_prefix(text);
-        if (const auto word = read_letter_assign(text)) {
-            ++at_;
-            return void(add(*word));
-        }
+        if (const auto word = read_letter_assign(text)) return ++at_, void(add(*word));
         if (!after_dot && is_classic_bit(text)) return at_ += 2, void(add(Word::direct));
         if (skip_section(text)) return;
         const std::optional<Word> word = word_of(text);
