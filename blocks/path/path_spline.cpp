@@ -7,6 +7,7 @@
 
 #include <sleef.h>
 
+#include "blocks/path/path_integral.hpp"
 #include "blocks/path/path_polynomial.hpp"
 
 namespace lineshaft {
@@ -76,18 +77,7 @@ Pace pace_at(const PathCurve& c, double t) {
 }
 
 double length_of(const PathCurve& c) {
-    constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
-    constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    constexpr int parts = 8;
-    double sum = 0;
-    for (int part = 0; part < parts; ++part) {
-        const double middle = (part + 0.5) / parts, half = 0.5 / parts;
-        sum += weights[0] * pace_at(c, middle).speed;
-        for (std::size_t k = 1; k < 3; ++k)
-            sum += weights[k] * (pace_at(c, middle - half * places[k]).speed +
-                                 pace_at(c, middle + half * places[k]).speed);
-    }
-    return sum * 0.5 / parts;
+    return integral_until(1, [&](double t) { return pace_at(c, t).speed; });
 }
 
 /// t by the length: with the right first and second derivative at both ends.
