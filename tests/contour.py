@@ -86,6 +86,17 @@ def check_circle():
         yield f"circle: {means[0.05] / means[0.025]} times the difference at twice the step"
 
 
+def check_ahead():
+    """An actual point in front of the command is compared with the commands that come later."""
+    for lead in (2.4, 10.0):
+        rows = list(circle(4000, outside=0, lag=-lead, slip=1))
+        last = rows[3900][2:]
+        answer = compare([row if i < 3900 else row[:2] + last for i, row in enumerate(rows)])
+        for row, most in (("linear", 5 * NM), ("spline", 1 * NM)):
+            if figure(answer, row, "greatest") > most:
+                yield f"ahead by {lead} points: {row} is {figure(answer, row, 'greatest') / NM} nm"
+
+
 def check_units():
     rows = list(circle(500))
     mm = compare(rows, "{} [mm]")
@@ -145,7 +156,7 @@ def check_interrupt():
 
 def main():
     project = pathlib.Path(sys.argv[2]).resolve()
-    checks = [check_line(), check_circle(), check_units(), check_gaps(), check_run(project), check_interrupt()]
+    checks = [check_line(), check_circle(), check_ahead(), check_units(), check_gaps(), check_run(project), check_interrupt()]
     failures = [failure for check in checks for failure in check]
     for failure in failures:
         print(failure)

@@ -197,7 +197,7 @@ def replayed_files(c):
 
 TRACED = """lineshaft: 1
 parameters: {speed: 10 mm/s, jitter: 0 ms}
-tasks: {main: {every: 10 ms, jitter: $jitter}}
+tasks: {main: {every: 2 ms, jitter: $jitter}}
 blocks:
   axis:
     type: path_move
@@ -226,8 +226,8 @@ def traces(c):
     (c.folder / "traced.yaml").write_text(TRACED)
     (c.folder / "traced_plan.yaml").write_text(TRACED_PLAN)
 
-    def call(*arguments, expect):
-        result = subprocess.run([c.lineshaft, *arguments], cwd=c.folder, capture_output=True, text=True, timeout=300)
+    def call(*arguments, expect, **options):
+        result = subprocess.run([c.lineshaft, *arguments], cwd=c.folder, capture_output=True, text=True, timeout=300, **options)
         assert result.returncode == expect, (arguments, result.stdout, result.stderr)
         return result
 
@@ -248,9 +248,20 @@ def traces(c):
     assert [row.get("traces") for row in rows] == [None, None, [f"failed/{name}" for name in repeated[2:]]], rows
     call("study", "traced_plan.yaml", "--quiet", "-o", "without.csv", expect=1)
     assert c.bytes("with.csv") == c.bytes("without.csv")
+    study = ("study", "traced_plan.yaml", "--quiet", "--traces", "refused", "-o", "refused.csv")
+    assert "cannot write 'refused/" in call(*study, expect=3, preexec_fn=lambda: limit_files(4096)).stderr
+    call(*study, "--resume", expect=1)
+    assert c.bytes("refused.csv") == c.bytes("without.csv"), "what the disk refused is no result"
+    assert files("refused") == files("all") and not list((c.folder / "refused").glob("*.part*"))
     assert "L0503" in call("study", "plan.yaml", "--traces", "none", expect=2).stderr
     (c.folder / "file").write_text("")
     assert "cannot make 'file/x'" in call("study", "traced_plan.yaml", "--traces", "file/x", expect=2).stderr
+
+
+def limit_files(size):
+    """As on a full disk: no file grows beyond it."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
 def size(path):
@@ -330,10 +341,7 @@ def torn_rows(c):
 
 def full_disks(c):
     assert "No space left" in c.run("-o", "/dev/full", expect=3).stderr
-    def limit():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
-    result = c.run("-o", "full.csv", "-j", "2", expect=3, preexec_fn=limit)
+    result = c.run("-o", "full.csv", "-j", "2", expect=3, preexec_fn=lambda: limit_files(8192))
     assert "cannot write 'full.csv'" in result.stderr and not (c.folder / "full.csv").exists()
     c.run("-o", "full.csv", "--resume", expect=1)
     assert c.bytes("full.csv") == c.bytes("one.csv")

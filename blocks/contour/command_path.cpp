@@ -56,10 +56,12 @@ ContourEstimate CommandPath::estimate(Point actual) const {
     const double length = std::sqrt(t.x * t.x + t.y * t.y);
     if (length == 0) {
         result.signed_error = std::sqrt(r.x * r.x + r.y * r.y);
+        result.is_ahead = size() == 1 && result.signed_error > 0;
         return result;
     }
     result.normal = {-t.y / length, t.x / length};
     result.signed_error = (t.x * r.y - t.y * r.x) / length;
+    result.is_ahead = result.at_newest && t.x * r.x + t.y * r.y > 0;
     return result;
 }
 

@@ -13,6 +13,7 @@ struct ContourEstimate {
     Point normal;                  ///< unit vector to the left of the path; 0 where it has none
     std::int64_t points_back = 0;  ///< nearest command point: how many before the newest
     bool at_newest = false;        ///< nearest is the newest: its tangent is the last step's
+    bool is_ahead = false;         ///< of the newest along its tangent, or off the only one
     bool out_of_reach = false;     ///< nearest may have left the memory: nothing else is told
 };
 

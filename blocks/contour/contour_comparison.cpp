@@ -49,6 +49,8 @@ std::span<const Field> ContourComparison::fields() {
         output("mean_points_back", &C::mean_points_back, "",
                "command points from the newest to the nearest"),
         output("samples", &C::samples, "", "taken since the rising edge"),
+        output("waiting", &C::waiting, "",
+               "ahead of the newest command, until it has gone by them"),
     };
     return table;
 }
@@ -57,33 +59,61 @@ void ContourComparison::scan(const Scan&) {
     if (rising_edge(enable, last_enable)) begin();
     if (!usable(command_x) || !usable(command_y)) return;
     path.add({command_x, command_y});
-    if (!enable || !usable(actual_x) || !usable(actual_y)) return;
+    if (!enable) return;
+    take_passed();
+    if (!usable(actual_x) || !usable(actual_y)) return;
     const ContourEstimate estimate = path.estimate({actual_x, actual_y});
-    if (!estimate.out_of_reach) sample(estimate);
+    const Sample sample{
+        {command_x, command_y}, {actual_x, actual_y}, std::abs(estimate.signed_error)};
+    if (estimate.is_ahead)
+        wait(sample);
+    else if (!estimate.out_of_reach)
+        take(sample, estimate.points_back);
 }
 
 void ContourComparison::begin() {
     real_time_error = linear_error = spline_error = following_error = {};
     to_linear = to_spline = points_back = {};
-    samples = 0;
+    samples = waiting = 0;
     mean_points_back = 0;
 }
 
-void ContourComparison::sample(const ContourEstimate& estimate) {
-    const Point p{actual_x, actual_y};
-    const std::int64_t oldest = std::min(path.size() - 1, estimate.points_back + reach);
-    const std::int64_t newest = std::max<std::int64_t>(0, estimate.points_back - reach);
+void ContourComparison::take_passed() {
+    std::int64_t kept = 0;
+    for (std::int64_t i = 0; i < waiting; ++i) {
+        const Sample sample = ahead[static_cast<std::size_t>(i)];
+        const ContourEstimate now = path.estimate(sample.actual);
+        if (now.is_ahead)
+            ahead[static_cast<std::size_t>(kept++)] = sample;
+        else if (!now.out_of_reach)
+            take(sample, now.points_back);
+    }
+    waiting = kept;
+}
+
+void ContourComparison::wait(const Sample& sample) {
+    if (waiting == most_waiting) {
+        std::copy(ahead.begin() + 1, ahead.end(), ahead.begin());
+        --waiting;
+    }
+    ahead[static_cast<std::size_t>(waiting++)] = sample;
+}
+
+void ContourComparison::take(const Sample& sample, std::int64_t back) {
+    const Point p = sample.actual;
+    const std::int64_t oldest = std::min(path.size() - 1, back + reach);
+    const std::int64_t newest = std::max<std::int64_t>(0, back - reach);
     std::array<Point, 2 * reach + 1> room{};
     std::array<SplineSpan, 2 * reach> span_room{};
     const auto count = static_cast<std::size_t>(oldest - newest) + 1;
-    const auto nearest = static_cast<std::size_t>(oldest - estimate.points_back);
+    const auto nearest = static_cast<std::size_t>(oldest - back);
     const std::span points(room.data(), count);
     const std::span spans(span_room.data(), count - 1);
     for (std::size_t i = 0; i < count; ++i)
         points[i] = path.point(oldest - static_cast<std::int64_t>(i));
     natural_spline(points, spans);
 
-    real_time = std::abs(estimate.signed_error);
+    real_time = sample.real_time;
     linear = polyline_distance(points, nearest, p);
     spline = spans.empty() ? linear : spline_distance(spans, nearest, p);
     real_time_error.add(real_time);
@@ -91,9 +121,9 @@ void ContourComparison::sample(const ContourEstimate& estimate) {
     spline_error.add(spline);
     to_linear.add((real_time - linear) * nm_in_mm);
     to_spline.add((real_time - spline) * nm_in_mm);
-    const double dx = command_x - actual_x, dy = command_y - actual_y;
+    const double dx = sample.command.x - p.x, dy = sample.command.y - p.y;
     following_error.add(std::sqrt(dx * dx + dy * dy));
-    points_back.add(static_cast<double>(estimate.points_back));
+    points_back.add(static_cast<double>(back));
     mean_points_back = points_back.mean;
     samples = points_back.count;
 }

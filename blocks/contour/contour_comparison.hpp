@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "blocks/contour/command_path.hpp"
@@ -17,15 +18,24 @@ namespace lineshaft {
 /// they are known and remembered: an end's influence falls by 2 + sqrt(3) a point (by 1e-18 over
 /// the reach), so that with a dozen points to the newest it agrees with the spline through the
 /// whole record to well below a nanometre. `lineshaft contour` compares over the whole record.
-/// A sample whose inputs are no number, or whose nearest point has left the memory, is left out.
+/// An actual point ahead of the newest command waits, its estimate with it, until the command has
+/// gone by it: before, the path that it is compared with is not there. A sample whose inputs are no
+/// number, whose nearest point has left the memory, or behind which `most_waiting` others wait, is
+/// left out.
 struct ContourComparison {
-    static constexpr std::int64_t reach = 32;  ///< [points]
+    static constexpr std::int64_t reach = 32;         ///< [points]
+    static constexpr std::int64_t most_waiting = 64;  ///< [samples]
+
+    struct Sample {
+        Point command, actual;  ///< [mm]
+        double real_time = 0;   ///< [mm]
+    };
 
     bool enable = false;
     double command_x = 0, command_y = 0, actual_x = 0, actual_y = 0;
 
     double real_time = 0, linear = 0, spline = 0;
-    std::int64_t samples = 0;
+    std::int64_t samples = 0, waiting = 0;
     double mean_points_back = 0;
 
     MagnitudeStatistics real_time_error, linear_error, spline_error, following_error;  ///< [mm]
@@ -33,6 +43,7 @@ struct ContourComparison {
     MagnitudeStatistics points_back;
     bool last_enable = false;
     CommandPath path;
+    std::array<Sample, most_waiting> ahead{};  ///< those that wait, the oldest first
 
     static constexpr std::string_view type = "contour_comparison";
     static constexpr std::string_view doc =
@@ -42,7 +53,9 @@ struct ContourComparison {
 
   private:
     void begin();
-    void sample(const ContourEstimate& estimate);
+    void take_passed();
+    void wait(const Sample& sample);
+    void take(const Sample& sample, std::int64_t back);
 };
 
 }  // namespace lineshaft

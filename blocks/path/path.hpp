@@ -23,7 +23,7 @@ struct PathJoint {
 /// The motion along the path at one instant, and that of the axes.
 struct PathMotion {
     MotionState path;  ///< over the length from the start of the first piece
-    MotionState way;   ///< of the first three axes since then, at a corner by its vertex
+    MotionState way;   ///< of the first three axes since then
     PathVector position{}, velocity{}, acceleration{}, jerk{};
 };
 

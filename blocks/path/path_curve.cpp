@@ -6,6 +6,7 @@
 #include <sleef.h>
 
 #include "blocks/path/path_bound.hpp"
+#include "blocks/path/path_integral.hpp"
 
 namespace lineshaft {
 
@@ -70,6 +71,33 @@ double angle_of(const PathVector& a, const PathVector& u, const PathVector& w) {
     const double angle = Sleef_cinz_atan2d1_u10purec(product(a, w), product(a, u));
     return angle < 0 ? angle + 2 * std::numbers::pi : angle;
 }
+
+/// Of a corner in the first three axes, x' = u + h (w - u) with h = 3 t^2 - 2 t^3: how fast it is
+/// run along there, and how far it has come, by t from 0 to 1.
+class CornerWay {
+  public:
+    explicit CornerWay(const PathCurve& corner)
+        : u_(in_space(corner.u)), turn_(combined(in_space(corner.w), 1, u_, -1)) {}
+
+    double pace(double t) const { return size_of(combined(u_, 1, turn_, t * t * (3 - 2 * t))); }
+
+    /// First and second derivative of the pace by t, where it is not 0.
+    std::pair<double, double> change(double t) const {
+        const double h = t * t * (3 - 2 * t), dh = 6 * t * (1 - t), ddh = 6 - 12 * t;
+        const double across = product(u_, turn_), square = product(turn_, turn_), g = pace(t);
+        const double first = dh * (across + h * square) / g;
+        const double second = (ddh * (across + h * square) + dh * dh * square - first * first) / g;
+        return {first, second};
+    }
+
+    /// Over 0..t.
+    double until(double t) const {
+        return integral_until(t, [this](double at) { return pace(at); });
+    }
+
+  private:
+    PathVector u_, turn_;
+};
 
 PathFault finish_arc(PathCurve& arc, double angle, PathCurve& out) {
     arc.kind = PathCurveKind::arc;
@@ -181,11 +209,14 @@ bool PathCurve::is_in_space() const {
 PathCurve::Way PathCurve::way_at(double s) const {
     s = std::fmin(std::fmax(s, 0), length);
     if (kind != PathCurveKind::corner) return is_in_space() ? Way{s, 1, 0, 0} : Way{};
-    const double begins = size_of(in_space(u)) > 0 ? 1 : 0, ends = size_of(in_space(w)) > 0 ? 1 : 0;
-    const double turn = ends - begins, t = s / length;
-    return {begins * s + turn * length * (t * t * t * (1 - 0.5 * t)),
-            begins + turn * (t * t * (3 - 2 * t)), turn * (6 * t * (1 - t) / length),
-            turn * ((6 - 12 * t) / (length * length))};
+    const CornerWay way(*this);
+    const double t = s / length;
+    Way out{length * way.until(t), way.pace(t), 0, 0};
+    if (out.slope == 0) return out;
+    const auto [first, second] = way.change(t);
+    out.bend = first / length;
+    out.twist = second / (length * length);
+    return out;
 }
 
 double PathCurve::share(std::size_t axis) const {

@@ -57,8 +57,8 @@ struct PathCurve {
     /// One of the first three axes moves.
     bool is_in_space() const;
 
-    /// The way of the first three axes from its start on, 0 where none of them moves, and that of a
-    /// corner by its vertex; with its derivatives by s.
+    /// The way of the first three axes from its start on, 0 where none of them moves; with its
+    /// derivatives by s.
     struct Way {
         double way = 0, slope = 0, bend = 0, twist = 0;
     };

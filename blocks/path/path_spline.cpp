@@ -7,6 +7,7 @@
 
 #include <sleef.h>
 
+#include "blocks/path/path_integral.hpp"
 #include "blocks/path/path_polynomial.hpp"
 
 namespace lineshaft {
@@ -38,6 +39,18 @@ Polynomial hermite(double p0, double d0, double b0, double p1, double d1, double
         p0, d0, 0.5 * b0, 10 * P - 4 * D + 0.5 * B, -15 * P + 7 * D - B, 6 * P - 3 * D + 0.5 * B};
 }
 
+double distance(const PathVector& a, const PathVector& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path_space; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum);
+}
+
+double along(const PathVector& a, const PathVector& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path_space; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
 void set(PathCurve& c, std::size_t axis, const Polynomial& p) {
     c.origin[axis] = p[0];
     c.u[axis] = p[1];
@@ -64,18 +77,7 @@ Pace pace_at(const PathCurve& c, double t) {
 }
 
 double length_of(const PathCurve& c) {
-    constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};
-    constexpr double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-    constexpr int parts = 8;
-    double sum = 0;
-    for (int part = 0; part < parts; ++part) {
-        const double middle = (part + 0.5) / parts, half = 0.5 / parts;
-        sum += weights[0] * pace_at(c, middle).speed;
-        for (std::size_t k = 1; k < 3; ++k)
-            sum += weights[k] * (pace_at(c, middle - half * places[k]).speed +
-                                 pace_at(c, middle + half * places[k]).speed);
-    }
-    return sum * 0.5 / parts;
+    return integral_until(1, [&](double t) { return pace_at(c, t).speed; });
 }
 
 /// t by the length: with the right first and second derivative at both ends.
@@ -120,8 +122,16 @@ PathPoint scaled(PathPoint point, double scale) {
     return point;
 }
 
+/// `scale`, or what is left of it where the curvature is great: beyond a few radii the second
+/// derivative would lead the curve far out of its points.
+double scale_at(const PathPoint& point, double scale) {
+    constexpr double most_radii = 3;
+    const double curvature = std::sqrt(along(point.bend, point.bend));
+    return curvature * scale > most_radii ? most_radii / curvature : scale;
+}
+
 PathCurve quintic(const PathPoint& from, const PathPoint& to, double scale) {
-    return quintic(scaled(from, scale), scaled(to, scale));
+    return quintic(scaled(from, scale_at(from, scale)), scaled(to, scale_at(to, scale)));
 }
 
 /// From t = `at` on, of the width `width`.
@@ -157,18 +167,6 @@ std::size_t divide(const PathCurve& whole, double most_uneven,
         widths[waiting++] = width;
     }
     return count;
-}
-
-double distance(const PathVector& a, const PathVector& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < path_space; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return std::sqrt(sum);
-}
-
-double along(const PathVector& a, const PathVector& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < path_space; ++i) sum += a[i] * b[i];
-    return sum;
 }
 
 /// A part of a line or of an arc, from one length of it to another.

@@ -103,9 +103,9 @@ bool CaseRunner::judge(const RunReport& report, CaseResult& result) {
     interrupted_ = report.result.outcome == Outcome::interrupted && report.output_error.empty();
     if (interrupted_) return false;
     result.machine_seconds += seconds(report.result.time);
-    if (report.faulted())
-        result.faults.push_back(report.output_error.empty() ? report.result.message
-                                                            : report.output_error);
+    result.output_error = report.output_error;
+    if (!result.output_error.empty()) return false;
+    if (report.faulted()) result.faults.push_back(report.result.message);
     for (const Verdict& verdict : report.verdicts)
         if (!verdict.ok && !(report.faulted() && verdict.undecided))  // the fault says why
             result.deviations.push_back(verdict.deviation);

@@ -24,6 +24,7 @@ struct CaseResult {
     std::shared_ptr<const StudyCase> of;
     std::vector<Measured> values;         ///< one a comparison; empty: it did not run to its end
     std::vector<std::string> faults;      ///< why it did not
+    std::string output_error;             ///< why its trace is not there: this is no result then
     std::vector<std::string> deviations;  ///< expectations of the program that failed
     /// The program's parameters in force; none: it could not be loaded.
     std::vector<std::pair<std::string, std::string>> parameters;
@@ -61,10 +62,10 @@ struct CaseOptions {
 };
 
 /// Runs the cases of a range; `take` gets their results in order, one thread at a time, and stops
-/// the study by false. No more than a few dozen results wait for an earlier one, however long that
-/// takes, so memory does not grow with the number of cases. Results that still wait when the study
-/// is stopped or interrupted are left in what is returned. Neither values nor order depend on the
-/// number of jobs.
+/// the study by false; of a case whose trace could not be written it gets the error. No more than a
+/// few dozen results wait for an earlier one, however long that takes, so memory does not grow with
+/// the number of cases. Results that still wait when the study is stopped or interrupted are left
+/// in what is returned. Neither values nor order depend on the number of jobs.
 std::map<std::int64_t, CaseResult> run_cases(const Study& study, const Catalog& catalog,
                                              CaseRange range, const CaseOptions& options,
                                              const std::function<bool(const CaseResult&)>& take);

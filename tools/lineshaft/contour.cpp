@@ -26,7 +26,10 @@ constexpr const char* contour_help =
     "  real-time  nearest command point so far, tangent from its neighbours (block contour_error)\n"
     "  linear     distance to the polyline of all command points, beside the nearest\n"
     "  spline     distance to the natural cubic spline through all, beside the nearest\n"
-    "and their differences. Units come from the trace's sidecar or from titles such as 'x [um]';\n"
+    "The nearest is that of the real-time search; where it is the newest it is looked for on the\n"
+    "commands that came later, as the actual point may be ahead of the command.\n"
+    "Their differences are told, too. Units come from the trace's sidecar or from titles such as "
+    "'x [um]';\n"
     "without a unit a column is in mm. Left out and counted: rows that lack a value or are beyond\n"
     "1000 km, and rows whose nearest point has left the 512 points of the real-time memory.\n"
     "Time per point is that of this computer: the real-time one includes the search for the\n"
@@ -134,6 +137,9 @@ class Comparer {
     const Result& result() const { return result_; }
 
   private:
+    /// Of `path`: also of the commands behind the newest, where the actual point is ahead of it.
+    std::size_t nearest_of_all(const Recording::Sample& sample,
+                               const ContourEstimate& estimate) const;
     template <class Measure>
     void time(std::size_t method, std::size_t from, std::size_t to, const Measure& measure);
     void count(const Recording::Sample& sample, const ContourEstimate& estimate, double linear,
@@ -154,6 +160,18 @@ void Comparer::time(std::size_t method, std::size_t from, std::size_t to, const 
     result_.seconds[method] += took.count();
 }
 
+std::size_t Comparer::nearest_of_all(const Recording::Sample& sample,
+                                     const ContourEstimate& estimate) const {
+    std::size_t at = sample.point - static_cast<std::size_t>(estimate.points_back);
+    if (!estimate.at_newest) return at;
+    const auto distance = [&](std::size_t i) {
+        return std::hypot(sample.actual.x - recording_.path[i].x,
+                          sample.actual.y - recording_.path[i].y);
+    };
+    while (at + 1 < recording_.path.size() && distance(at + 1) <= distance(at)) ++at;
+    return at;
+}
+
 void Comparer::compare(std::size_t from, std::size_t to) {
     using Sample = Recording::Sample;
     std::array<ContourEstimate, stretch> estimates;
@@ -162,15 +180,14 @@ void Comparer::compare(std::size_t from, std::size_t to) {
         path_.add(sample.command);
         estimates[i] = path_.estimate(sample.actual);
     });
-    const auto nearest = [&](const Sample& sample, std::size_t i) {
-        return sample.point - static_cast<std::size_t>(estimates[i].points_back);
-    };
+    std::array<std::size_t, stretch> nearest{};
+    for (std::size_t i = from; i < to; ++i)
+        nearest[i - from] = nearest_of_all(recording_.samples[i], estimates[i - from]);
     time(1, from, to, [&](const Sample& sample, std::size_t i) {
-        linear[i] = polyline_distance(recording_.path, nearest(sample, i), sample.actual);
+        linear[i] = polyline_distance(recording_.path, nearest[i], sample.actual);
     });
     time(2, from, to, [&](const Sample& sample, std::size_t i) {
-        spline[i] =
-            spans_.empty() ? linear[i] : spline_distance(spans_, nearest(sample, i), sample.actual);
+        spline[i] = spans_.empty() ? linear[i] : spline_distance(spans_, nearest[i], sample.actual);
     });
     for (std::size_t i = from; i < to; ++i)
         count(recording_.samples[i], estimates[i - from], linear[i - from], spline[i - from]);

@@ -68,6 +68,7 @@ class StudyRun {
     StudyCsv csv_;
     std::optional<ResultFile> file_;
     std::int64_t taken_ = 0;  ///< from what was there already
+    std::string trace_error_;
 };
 
 bool StudyRun::take(const CaseResult& result) {
@@ -98,6 +99,8 @@ Exit StudyRun::simulate(const Catalog& catalog) {
     ProgressLine line(command_.common.quiet || command_.common.json);
     std::int64_t done = taken_;
     const auto next = [&](const CaseResult& result) {
+        trace_error_ = result.output_error;
+        if (!trace_error_.empty()) return false;
         ++done;
         line.show([&](double elapsed) {
             const double rate = static_cast<double>(done - taken_) / elapsed;
@@ -107,18 +110,20 @@ Exit StudyRun::simulate(const Catalog& catalog) {
         });
         return take(result);
     };
-    const auto waiting = run_cases(study_, catalog, {range_.first + taken_, range_.last},
-                                   {.jobs = command_.jobs,
-                                    .interrupt = &interrupt_requested,
-                                    .traces = command_.traces,
-                                    .known = &late},
-                                   next);
+    auto waiting = run_cases(study_, catalog, {range_.first + taken_, range_.last},
+                             {.jobs = command_.jobs,
+                              .interrupt = &interrupt_requested,
+                              .traces = command_.traces,
+                              .known = &late},
+                             next);
     if (file_ && !file_->error().empty()) return tell_stopped(Exit::fault);
     const bool interrupted = done < range_.count();
     if (file_ && interrupted) {
+        std::erase_if(waiting, [](const auto& item) { return !item.second.output_error.empty(); });
         late.insert(waiting.begin(), waiting.end());
         file_->keep_late(late);
     }
+    if (!trace_error_.empty()) return tell_stopped(Exit::fault);
     return finish(interrupted);
 }
 
@@ -155,6 +160,7 @@ Exit StudyRun::finish(bool interrupted) {
 }
 
 Exit StudyRun::tell_stopped(Exit exit) const {
+    if (!trace_error_.empty()) spdlog::error("{}", trace_error_);
     if (!file_) return exit;
     if (!file_->error().empty()) spdlog::error("{}", file_->error());
     if (file_->rows() > 0)

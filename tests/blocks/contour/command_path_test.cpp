@@ -44,6 +44,8 @@ TEST_CASE("at the newest point the last step is the tangent, at the first the fi
     for (const Point p : {Point{0, 0}, Point{1, 0}, Point{2, 1}}) path.add(p);
     const ContourEstimate newest = path.estimate({2, 3}), first = path.estimate({-0.4, 0.5});
     CHECK(newest.at_newest);
+    CHECK(newest.is_ahead);
+    CHECK_FALSE(path.estimate({1.5, 0.6}).is_ahead);
     CHECK(newest.points_back == 0);
     CHECK(newest.signed_error == Approx(2 * std::sqrt(0.5)));
     CHECK(first.points_back == 2);
@@ -58,6 +60,8 @@ TEST_CASE("a command that stands adds no point and divides by no zero", "[contou
     CHECK(path.size() == 1);
     const ContourEstimate alone = path.estimate({1, 3});
     CHECK(alone.signed_error == 2);
+    CHECK(alone.is_ahead);
+    CHECK_FALSE(path.estimate({1, 1}).is_ahead);
     CHECK(alone.normal.x == 0);
     CHECK(path.add({2, 1}));
     CHECK(path.estimate({1.9, 3}).signed_error == Approx(2));

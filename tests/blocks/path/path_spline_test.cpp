@@ -127,6 +127,30 @@ TEST_CASE("path_spline: the sharpest turns are passed") {
         }
 }
 
+TEST_CASE("path_spline: behind an arc that is small beside the chord it stays near its points") {
+    for (const double radius : {0.01, 0.1, 0.5, 2.0, 10.0}) {
+        PathPoint from;
+        from.tangent = {0, -1};
+        from.bend = {-1 / radius};
+        const PathPoint to = waypoint({0, 0}, {20, -5}, {40, 0});
+        Parts parts;
+        const std::size_t count = spline_between(from, to, parts);
+        REQUIRE(count > 0);
+        CHECK(parts[0].at(0).bend[0] == Approx(-1 / radius));
+        double length = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            length += parts[i].length;
+            for (double share = 0; share <= 1; share += 0.125) {
+                const PathVector x = parts[i].at(share * parts[i].length).position;
+                CHECK(x[0] >= -5);
+                CHECK(x[0] <= 20 + 1e-9);
+                CHECK(std::abs(x[1]) <= 15);
+            }
+        }
+        CHECK(length < 40);
+    }
+}
+
 TEST_CASE("path_spline: between tangents at a right angle, over 50 mm") {
     PathPoint from, to;
     from.tangent = {0, 1};
