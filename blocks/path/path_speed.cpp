@@ -74,16 +74,15 @@ void SpeedProblem::add(const Row& row) {
 }
 
 void SpeedProblem::add_rows_at_node(std::size_t k) {
-    const double w = nodes[k].energy, a = nodes[k].acceleration;
     const double before = weights[k].before, behind = weights[k].behind, rise = weights[k].rise;
     const double fastest = std::min(in[k - 1].along.velocity, in[k].along.velocity);
     const double most = 0.5 * fastest * fastest;
-    add({k, {before / most, behind / most, 0}, {}, w / most, true});
+    add({{before / most, behind / most, 0}, {}, 0, {}, most, true});
     const double tight = std::min(in[k - 1].tight, in[k].tight);
     const auto bounded = [&](double tangent, double bend, double, double limit) {
         if (limit >= no_limit) return;
         const double p = tangent / (tight * limit), q = 2 * bend / (tight * limit);
-        add({k, {q * before - p * rise, q * behind + p * rise, 0}, {}, p * a + q * w, false});
+        add({{q * before - p * rise, q * behind + p * rise, 0}, {}, 0, {p, q, 0}, limit, false});
     };
     const bool is_line = in[k].kind == PathCurveKind::line && in[k - 1].kind != PathCurveKind::line;
     const SpeedInterval& here = is_line ? in[k - 1] : in[k];
@@ -95,44 +94,73 @@ void SpeedProblem::add_rows_at_node(std::size_t k) {
 
 void SpeedProblem::add_rows_of_jerk(std::size_t k, bool at_left) {
     const SpeedInterval& here = in[k];
+    each_bounded(here, at_left ? here.left : here.right, &PathLimit::jerk,
+                 [&](double tangent, double bend, double twist, double limit) {
+                     if (limit >= no_limit) return;
+                     add({{}, {}, 0, {tangent, bend, twist}, here.tight * limit, false});
+                 });
+}
+
+/// False where there are too many.
+bool SpeedProblem::find_rows() {
+    count = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        rows_of[k].first = count;
+        if (k > 0) add_rows_at_node(k);
+        if (k > 0 && k + 1 < n) {
+            const double most = 0.5 * in[k].along.velocity * in[k].along.velocity;
+            add({{0, 1 / most, 0}, {}, 0, {}, most, true});
+        }
+        rows_of[k].left = count;
+        add_rows_of_jerk(k, true);
+        rows_of[k].right = count;
+        add_rows_of_jerk(k, false);
+        rows_of[k].end = count;
+    }
+    if (count > rows.size()) return false;
+    renew_rows();
+    return true;
+}
+
+/// Where b is now.
+void SpeedProblem::renew_rows() {
+    for (std::size_t k = 0; k < n; ++k) {
+        const double w = nodes[k].energy, a = nodes[k].acceleration;
+        for (std::size_t r = rows_of[k].first; r < rows_of[k].left; ++r) {
+            Row& row = rows[r];
+            row.value = row.is_one_sided ? w / row.limit : row.factors[0] * a + row.factors[1] * w;
+        }
+        if (k > 0 && k + 1 < n) {
+            Row& of_middle = rows[rows_of[k].left - 1];
+            of_middle.value = b[k] / of_middle.limit;
+        }
+        renew_rows_of_jerk(k, true);
+        renew_rows_of_jerk(k, false);
+    }
+}
+
+void SpeedProblem::renew_rows_of_jerk(std::size_t k, bool at_left) {
     const std::size_t at = at_left ? k : k + 1;
     const double w = nodes[at].energy, a = nodes[at].acceleration;
     const Weights &l = weights[k], &r = weights[k + 1];
-    const double per = 1 / here.length, v = std::sqrt(2 * w), half = 0.5 / w;
+    const double per = 1 / in[k].length, v = std::sqrt(2 * w), half = 0.5 / w;
     const double slope = (nodes[k + 1].acceleration - nodes[k].acceleration) * per;
     const Triple gs{l.rise * per, -(l.rise + r.rise) * per, r.rise * per};
     const Triple gw = at_left ? Triple{l.before, l.behind, 0} : Triple{0, r.before, r.behind};
     const Triple ga = at_left ? Triple{-l.rise, l.rise, 0} : Triple{0, -r.rise, r.rise};
     const Triple falls{half * gw[0], half * gw[1], half * gw[2]};
-    each_bounded(here, at_left ? here.left : here.right, &PathLimit::jerk,
-                 [&](double tangent, double bend, double twist, double limit) {
-                     if (limit >= no_limit) return;
-                     const double f = v / (here.tight * limit);
-                     const double x = f * tangent, y = 3 * f * bend, z = 2 * f * twist;
-                     Row row{k, {}, falls, x * slope + y * a + z * w, false};
-                     for (std::size_t i = 0; i < 3; ++i)
-                         row.gradient[i] = x * gs[i] + y * ga[i] + z * gw[i];
-                     add(row);
-                 });
-}
-
-/// Always in the same order.
-void SpeedProblem::find_rows() {
-    count = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-        if (k > 0) add_rows_at_node(k);
-        if (k > 0 && k + 1 < n) {
-            const double most = 0.5 * in[k].along.velocity * in[k].along.velocity;
-            add({k, {0, 1 / most, 0}, {}, b[k] / most, true});
-        }
-        add_rows_of_jerk(k, true);
-        add_rows_of_jerk(k, false);
+    const std::size_t first = at_left ? rows_of[k].left : rows_of[k].right;
+    const std::size_t end = at_left ? rows_of[k].right : rows_of[k].end;
+    for (Row& row : std::span(rows.data() + first, end - first)) {
+        const double f = v / row.limit;
+        const double x = f * row.factors[0], y = 3 * f * row.factors[1], z = 2 * f * row.factors[2];
+        row.value = x * slope + y * a + z * w;
+        row.falls = falls;
+        for (std::size_t i = 0; i < 3; ++i) row.gradient[i] = x * gs[i] + y * ga[i] + z * gw[i];
     }
 }
 
 void SpeedProblem::begin() {
-    find_rows();
-    if (count > rows.size()) return;
     const double start = 1.0 / static_cast<double>(count);
     for (std::size_t r = 0; r < count; ++r) {
         const double value = rows[r].value;
@@ -156,21 +184,23 @@ void SpeedProblem::begin_again() {
     }
 }
 
-double SpeedProblem::gap() const {
-    double sum = 0;
-    for (std::size_t r = 0; r < count; ++r)
-        sum += duals[r].slack[0] * duals[r].weight[0] + duals[r].slack[1] * duals[r].weight[1];
-    return sum;
+SpeedProblem::Progress SpeedProblem::progress() const {
+    Progress out;
+    for (std::size_t r = 0; r < count; ++r) {
+        const Row& row = rows[r];
+        const Dual& dual = duals[r];
+        out.gap += dual.slack[0] * dual.weight[0] + dual.slack[1] * dual.weight[1];
+        out.residual = std::max(out.residual, row.value - 1 + dual.slack[0]);
+        if (!row.is_one_sided)
+            out.residual = std::max(out.residual, -row.value - 1 + dual.slack[1]);
+    }
+    return out;
 }
 
-/// By how much a row is off at most.
-double SpeedProblem::residual() const {
-    double off = 0;
-    for (std::size_t r = 0; r < count; ++r) {
-        off = std::max(off, rows[r].value - 1 + duals[r].slack[0]);
-        if (!rows[r].is_one_sided) off = std::max(off, -rows[r].value - 1 + duals[r].slack[1]);
-    }
-    return off;
+/// Of k - 1, k and k + 1; 0 for those that are not there.
+SpeedProblem::Triple SpeedProblem::around(const std::array<double, most_speed_intervals>& values,
+                                          std::size_t k) const {
+    return {k > 0 ? values[k - 1] : 0, values[k], k + 1 < n ? values[k + 1] : 0};
 }
 
 /// The matrix of the linear equations.
@@ -180,30 +210,29 @@ void SpeedProblem::assemble() {
         const double square = 2 * b[k];
         diagonal[k] += 3 * in[k].length / (square * square * std::sqrt(square) * time);
     }
-    for (std::size_t r = 0; r < count; ++r) {
-        const Row& row = rows[r];
-        Dual& dual = duals[r];
-        const std::size_t k = row.middle;
-        dual.inverse = {1 / dual.slack[0], 1 / dual.slack[1]};
-        const double f1 = dual.weight[0] * dual.inverse[0];
-        const double f2 = dual.weight[1] * dual.inverse[1];
-        const double both = f1 + f2, odd = f1 - f2;
-        const Triple &g = row.gradient, &e = row.falls;
-        Triple mg, me;
-        for (std::size_t i = 0; i < 3; ++i) {
-            mg[i] = both * g[i] + odd * e[i];
-            me[i] = odd * g[i] + both * e[i];
+    for (std::size_t k = 0; k < n; ++k) {
+        Triple d = around(diagonal, k);
+        double before = k > 0 ? next[k - 1] : 0, behind = next[k], across = 0;
+        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
+            Dual& dual = duals[r];
+            dual.inverse = {1 / dual.slack[0], 1 / dual.slack[1]};
+            const double f1 = dual.weight[0] * dual.inverse[0];
+            const double f2 = dual.weight[1] * dual.inverse[1];
+            const double both = f1 + f2, odd = f1 - f2;
+            const Triple &g = rows[r].gradient, &e = rows[r].falls;
+            Triple mg, me;
+            for (std::size_t i = 0; i < 3; ++i) {
+                mg[i] = both * g[i] + odd * e[i];
+                me[i] = odd * g[i] + both * e[i];
+            }
+            for (std::size_t i = 0; i < 3; ++i) d[i] += g[i] * mg[i] + e[i] * me[i];
+            before += g[0] * mg[1] + e[0] * me[1];
+            behind += g[1] * mg[2] + e[1] * me[2];
+            across += g[0] * mg[2] + e[0] * me[2];
         }
-        diagonal[k] += g[1] * mg[1] + e[1] * me[1];
-        if (k > 0) {
-            diagonal[k - 1] += g[0] * mg[0] + e[0] * me[0];
-            next[k - 1] += g[0] * mg[1] + e[0] * me[1];
-            second[k - 1] += g[0] * mg[2] + e[0] * me[2];
-        }
-        if (k + 1 < n) {
-            diagonal[k + 1] += g[2] * mg[2] + e[2] * me[2];
-            next[k] += g[1] * mg[2] + e[1] * me[2];
-        }
+        diagonal[k] = d[1];
+        if (k > 0) diagonal[k - 1] = d[0], next[k - 1] = before, second[k - 1] = across;
+        if (k + 1 < n) diagonal[k + 1] = d[2], next[k] = behind;
     }
 }
 
@@ -229,30 +258,36 @@ bool SpeedProblem::factor() {
 
 /// The step that leads each product of slack and multiplier to `target`, less what the product of
 /// their own changes came to in the step before if that `corrects`.
-void SpeedProblem::find_step(double target, bool corrects) {
+template <bool corrects>
+void SpeedProblem::find_step(double target) {
     right.fill(0);
     for (std::size_t k = 1; k + 1 < n; ++k) {
         const double square = 2 * b[k];
         right[k] += in[k].length / (square * std::sqrt(square) * time);
     }
-    for (std::size_t r = 0; r < count; ++r) {
-        const Row& row = rows[r];
-        const Dual& dual = duals[r];
-        const std::size_t k = row.middle;
-        const auto pull_of = [&](std::size_t side, double value) {
-            const double s = dual.slack[side], weight = dual.weight[side];
-            const double wanted = target - (corrects ? dual.product[side] : 0);
-            return (wanted + weight * (value - 1 + s)) * dual.inverse[side];
-        };
-        const double p1 = pull_of(0, row.value);
-        const double p2 = row.is_one_sided ? 0 : pull_of(1, -row.value);
-        Triple rhs;
-        for (std::size_t i = 0; i < 3; ++i)
-            rhs[i] = row.gradient[i] * (p1 - p2) + row.falls[i] * (p1 + p2);
-        right[k] -= rhs[1];
-        if (k > 0) right[k - 1] -= rhs[0];
-        if (k + 1 < n) right[k + 1] -= rhs[2];
+    for (std::size_t k = 0; k < n; ++k) {
+        Triple sum = around(right, k);
+        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
+            const Row& row = rows[r];
+            const Dual& dual = duals[r];
+            const auto pull_of = [&](std::size_t side, double value) {
+                const double s = dual.slack[side], weight = dual.weight[side];
+                const double wanted = target - (corrects ? dual.product[side] : 0);
+                return (wanted + weight * (value - 1 + s)) * dual.inverse[side];
+            };
+            const double p1 = pull_of(0, row.value);
+            const double p2 = row.is_one_sided ? 0 : pull_of(1, -row.value);
+            for (std::size_t i = 0; i < 3; ++i)
+                sum[i] -= row.gradient[i] * (p1 - p2) + row.falls[i] * (p1 + p2);
+        }
+        right[k] = sum[1];
+        if (k > 0) right[k - 1] = sum[0];
+        if (k + 1 < n) right[k + 1] = sum[2];
     }
+    solve_bands();
+}
+
+void SpeedProblem::solve_bands() {
     for (std::size_t k = 1; k + 1 < n; ++k) {
         step[k] = right[k];
         if (k >= 3) step[k] -= l2[k] * step[k - 2];
@@ -266,29 +301,30 @@ void SpeedProblem::find_step(double target, bool corrects) {
     step[0] = step[n - 1] = 0;
 }
 
-double SpeedProblem::along(const Row& row, const Triple& gradient) const {
-    const std::size_t k = row.middle;
-    return (k > 0 ? gradient[0] * step[k - 1] : 0) + gradient[1] * step[k] +
-           (k + 1 < n ? gradient[2] * step[k + 1] : 0);
-}
-
 /// What the step does to slacks and multipliers, and how far along it they and w stay above 0.
-SpeedProblem::Parts SpeedProblem::find_changes(double target, bool corrects) {
+template <bool corrects>
+SpeedProblem::Parts SpeedProblem::find_changes(double target) {
     constexpr double nearly = 0.985, least_energy = 0.2;
     Parts out;
-    for (std::size_t r = 0; r < count; ++r) {
-        const Row& row = rows[r];
-        Dual& dual = duals[r];
-        const double by = along(row, row.gradient), fall = along(row, row.falls);
-        for (std::size_t side = 0; side < (row.is_one_sided ? 1 : 2); ++side) {
-            const double sign = side == 0 ? 1 : -1, s = dual.slack[side], w = dual.weight[side];
-            const double ds = 1 - s - sign * (row.value + by) - fall;
-            const double wanted = target - (corrects ? dual.product[side] : 0);
-            const double dw = (wanted - w * (s + ds)) * dual.inverse[side];
-            if (out.primal * ds < -nearly * s) out.primal = -nearly * s / ds;
-            if (out.dual * dw < -nearly * w) out.dual = -nearly * w / dw;
-            dual.slack_change[side] = ds;
-            dual.weight_change[side] = dw;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Triple steps = around(step, k);
+        const auto along = [&](const Triple& g) {
+            return g[0] * steps[0] + g[1] * steps[1] + g[2] * steps[2];
+        };
+        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
+            const Row& row = rows[r];
+            Dual& dual = duals[r];
+            const double by = along(row.gradient), fall = along(row.falls);
+            for (std::size_t side = 0; side < (row.is_one_sided ? 1 : 2); ++side) {
+                const double sign = side == 0 ? 1 : -1, s = dual.slack[side], w = dual.weight[side];
+                const double ds = 1 - s - sign * (row.value + by) - fall;
+                const double wanted = target - (corrects ? dual.product[side] : 0);
+                const double dw = (wanted - w * (s + ds)) * dual.inverse[side];
+                if (out.primal * ds < -nearly * s) out.primal = -nearly * s / ds;
+                if (out.dual * dw < -nearly * w) out.dual = -nearly * w / dw;
+                dual.slack_change[side] = ds;
+                dual.weight_change[side] = dw;
+            }
         }
     }
     for (std::size_t k = 1; k + 1 < n; ++k)
@@ -299,8 +335,8 @@ SpeedProblem::Parts SpeedProblem::find_changes(double target, bool corrects) {
 
 /// Mehrotra's target: the better the step towards 0 would be, the nearer.
 double SpeedProblem::look_ahead(double now) {
-    find_step(0, false);
-    const Parts part = find_changes(0, false);
+    find_step<false>(0);
+    const Parts part = find_changes<false>(0);
     double then = 0;
     for (std::size_t r = 0; r < count; ++r) {
         Dual& dual = duals[r];
@@ -324,7 +360,7 @@ void SpeedProblem::go(const Parts& part) {
     }
     for (std::size_t k = 1; k + 1 < n; ++k) b[k] += part.primal * step[k];
     find_nodes();
-    find_rows();
+    renew_rows();
 }
 
 /// What is next to the greatest velocity along a way is run along with exactly that.
@@ -339,20 +375,28 @@ void SpeedProblem::settle() {
     find_nodes();
 }
 
+/// Where no motion keeps the limits multipliers grow beyond all bounds, or steps hardly lead on.
 bool SpeedProblem::iterate() {
     constexpr double near = 2e-4;     ///< to the least time, as a part of the first guess
     constexpr double hopeless = 0.2;  ///< of a gap that is not met any more
-    constexpr double nearly_kept = 1e-5;
-    constexpr int most_steps = 32, soon = 14;
+    constexpr double nearly_kept = 1e-5, far_off = 1e-2, beyond = 5, hardly = 2e-4;
+    constexpr int most_steps = 32, soon = 14, most_idle = 2;
+    double first = 1;
+    int idle = 0;
     for (int tries = 0; tries < most_steps; ++tries) {
-        const double now = gap(), off = residual();
-        if (now < near && off < nearly_kept) return true;
-        if (tries >= soon && now > hopeless) return false;
+        const Progress now = progress();
+        if (now.gap < near && now.residual < nearly_kept) return true;
+        if (tries == 0) first = std::max(first, now.gap);
+        if (now.gap > beyond * first || idle == most_idle || (tries >= soon && now.gap > hopeless))
+            return false;
         assemble();
         if (!factor()) return false;
-        const double target = std::max(look_ahead(now), 0.1 * near) / static_cast<double>(count);
-        find_step(target, true);
-        go(find_changes(target, true));
+        const double target =
+            std::max(look_ahead(now.gap), 0.1 * near) / static_cast<double>(count);
+        find_step<true>(target);
+        const Parts part = find_changes<true>(target);
+        idle = part.primal < hardly && now.residual > far_off ? idle + 1 : 0;
+        go(part);
     }
     return false;
 }
@@ -367,8 +411,9 @@ bool SpeedProblem::solve() {
     if (!is_found) {
         b = guess;
         find_nodes();
+        if (!find_rows()) return is_warm = false;
         begin();
-        is_found = count <= rows.size() && iterate();
+        is_found = iterate();
     }
     if (is_found) settle();
     return is_warm = is_found;

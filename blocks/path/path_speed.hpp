@@ -50,10 +50,17 @@ class SpeedProblem {
     /// A linear function of b[k-1], b[k], b[k+1] that is to stay within -1 and 1, or below 1; where
     /// `falls` is not 0 that bound becomes less as w rises.
     struct Row {
-        std::size_t middle = 0;  ///< k
         Triple gradient{}, falls{};
         double value = 0;
+        Triple factors{};  ///< of what is limited in terms of w and its derivatives
+        double limit = 0;  ///< of that
         bool is_one_sided = false;
+    };
+
+    /// The rows of one k, one behind the other.
+    struct Rows {
+        std::size_t first = 0;                     ///< of node k and of b[k]
+        std::size_t left = 0, right = 0, end = 0;  ///< of the jerk at both ends of interval k
     };
 
     /// Slack and multiplier of both sides of a row, what a step changes them by, and the product of
@@ -66,6 +73,12 @@ class SpeedProblem {
     /// How far along a step.
     struct Parts {
         double primal = 1, dual = 1;
+    };
+
+    /// How far from the least time and from the limits.
+    struct Progress {
+        double gap = 0;       ///< the sum of slacks times multipliers
+        double residual = 0;  ///< by how much a row is off at most
     };
 
     /// What node k is by b[k-1] and b[k]: w = before b[k-1] + behind b[k], w' = rise (b[k] -
@@ -83,27 +96,32 @@ class SpeedProblem {
         right{}, l1{}, l2{};
     std::array<Row, most_rows> rows;
     std::array<Dual, most_rows> duals;
+    std::array<Rows, most_speed_intervals> rows_of{};
     std::size_t count = 0;
     bool is_warm = false;
 
     void find_nodes();
-    void find_rows();
+    bool find_rows();
     void add(const Row& row);
     void add_rows_at_node(std::size_t k);
     void add_rows_of_jerk(std::size_t k, bool at_left);
+    void renew_rows();
+    void renew_rows_of_jerk(std::size_t k, bool at_left);
     void begin();
     void begin_again();
-    double gap() const;
-    double residual() const;
+    Progress progress() const;
     void assemble();
     bool factor();
-    void find_step(double target, bool corrects);
-    Parts find_changes(double target, bool corrects);
+    void solve_bands();
+    template <bool corrects>
+    void find_step(double target);
+    template <bool corrects>
+    Parts find_changes(double target);
     double look_ahead(double now);
     void go(const Parts& part);
     void settle();
     bool iterate();
-    double along(const Row& row, const Triple& gradient) const;
+    Triple around(const std::array<double, most_speed_intervals>& values, std::size_t k) const;
 };
 
 }  // namespace lineshaft

@@ -232,10 +232,129 @@ double deviation_of(const PathCurve& before, const PathCurve& after, double far)
     return 1.01 * std::max(off, passing);
 }
 
+constexpr double as_even_as_can_be = 1e-2;
+
+/// By the length, where the curve's own parameter is t.
+PathPoint point_at(const PathCurve& c, double t) {
+    const Pace pace = pace_at(c, t);
+    const double square = pace.speed * pace.speed;
+    PathPoint out;
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const Polynomial p = polynomial_of(c, i), first = derivative_of(p);
+        const double x = value_of(first, t);
+        out.position[i] = t < 1 ? value_of(p, t) : c.end[i];
+        out.tangent[i] = x / pace.speed;
+        out.bend[i] = (value_of(derivative_of(first), t) - x * (pace.change / square)) / square;
+    }
+    return out;
+}
+
+/// Parts one behind the other, each as long as it is even, whatever the curve turns by. Around a
+/// cusp, where they would be shorter than `shortest`, the curve is led into the cusp and out of it
+/// as along its chords: a stop.
+class Walk {
+  public:
+    Walk(const PathCurve& curve, double least, std::span<PathCurve, most_spline_parts> parts)
+        : whole(curve), shortest(least), out(parts) {}
+
+    /// How many there are; 0 where there would be too many.
+    std::size_t all();
+
+  private:
+    const PathCurve& whole;
+    double shortest;  ///< as a part of the curve's parameter
+    std::span<PathCurve, most_spline_parts> out;
+    std::size_t count = 0;
+    double at = 0;
+
+    bool is_even(double width);
+    double longest();
+    double slowest() const;
+    bool add(const PathPoint& from, const PathPoint& to);
+    bool pass_cusp();
+};
+
+bool Walk::is_even(double width) {
+    out[count] = part(whole, at, width);
+    return out[count].length > 0 && unevenness(out[count]) <= as_even_as_can_be;
+}
+
+/// How wide the part from here on may be; 0 where that is less than the shortest.
+double Walk::longest() {
+    constexpr int steps = 4;
+    double most = 1 - at, width = most;
+    if (is_even(width)) return width;
+    while (!is_even(width)) {
+        most = width;
+        width *= 0.5;
+        if (width < shortest) return 0;
+    }
+    for (int step = 0; step < steps; ++step) {
+        const double middle = 0.5 * (width + most);
+        (is_even(middle) ? width : most) = middle;
+    }
+    is_even(width);
+    return width;
+}
+
+/// Where the parameter's pace is least next, some of the shortest parts ahead.
+double Walk::slowest() const {
+    constexpr double reach = 4;
+    constexpr int steps = 40;
+    double a = at, b = std::min(1.0, at + reach * shortest);
+    for (int step = 0; step < steps; ++step) {
+        const double c = a + (b - a) / 3, d = b - (b - a) / 3;
+        (pace_at(whole, c).speed > pace_at(whole, d).speed ? a : b) =
+            pace_at(whole, c).speed > pace_at(whole, d).speed ? c : d;
+    }
+    return 0.5 * (a + b);
+}
+
+/// One curve from a point to another, in its parts.
+bool Walk::add(const PathPoint& from, const PathPoint& to) {
+    std::array<PathCurve, most_spline_parts> parts;
+    const std::size_t more = divide(whole_between(from, to), as_even_as_can_be, parts);
+    if (more == 0 || count + more > out.size()) return false;
+    std::copy(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(more),
+              out.begin() + static_cast<std::ptrdiff_t>(count));
+    count += more;
+    return true;
+}
+
+bool Walk::pass_cusp() {
+    double cusp = slowest();
+    if (cusp - at < 0.25 * shortest) cusp = at;
+    if (1 - cusp < 0.25 * shortest) cusp = 1;
+    const PathVector tip = point_at(whole, cusp).position;
+    if (cusp > at) {
+        const PathPoint from = point_at(whole, at);
+        if (!add(from, waypoint(from.position, tip, tip))) return false;
+    }
+    at = 1 - cusp < 3 * shortest ? 1 : cusp + 2 * shortest;
+    if (cusp == 1) return true;
+    const PathPoint to = point_at(whole, at);
+    return add(waypoint(tip, tip, to.position), to);
+}
+
+std::size_t Walk::all() {
+    while (at < 1) {
+        if (count == out.size()) return 0;
+        if (const double width = longest(); width > 0) {
+            at = width == 1 - at ? 1 : at + width;
+            ++count;
+        } else if (!pass_cusp()) {
+            return 0;
+        }
+    }
+    return count;
+}
+
 /// Into parts as even as 1e-4, or where these do not suffice as they can be.
 std::size_t divided(const PathCurve& whole, std::span<PathCurve, most_spline_parts> out) {
-    for (const double most_uneven : {1e-4, 4e-4, 2e-3, 1e-2})
+    for (const double most_uneven : {1e-4, 4e-4, 2e-3, as_even_as_can_be})
         if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
+    for (const double shortest : {1e-4, 1e-3, 1e-2})
+        if (const std::size_t count = Walk(whole, shortest, out).all(); count > 0) return count;
     return 0;
 }
 

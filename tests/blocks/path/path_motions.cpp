@@ -35,10 +35,12 @@ std::string violation(const PathMotion& m, const PathLimits& limits) {
     if (above(m.path.acceleration, limits.path.acceleration)) return "path acceleration";
     if (above(m.path.jerk, limits.path.jerk)) return "path jerk";
     for (std::size_t i = 0; i < most_path_axes; ++i) {
-        const std::string axis = " of axis " + std::to_string(i);
-        if (above(m.velocity[i], limits.axes[i].velocity)) return "velocity" + axis;
-        if (above(m.acceleration[i], limits.axes[i].acceleration)) return "acceleration" + axis;
-        if (above(m.jerk[i], limits.axes[i].jerk)) return "jerk" + axis;
+        const auto axis = [&](const char* what) {
+            return what + (" of axis " + std::to_string(i));
+        };
+        if (above(m.velocity[i], limits.axes[i].velocity)) return axis("velocity");
+        if (above(m.acceleration[i], limits.axes[i].acceleration)) return axis("acceleration");
+        if (above(m.jerk[i], limits.axes[i].jerk)) return axis("jerk");
     }
     return "";
 }

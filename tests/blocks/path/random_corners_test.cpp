@@ -9,23 +9,13 @@
 #include "blocks/path/path.hpp"
 #include "tests/blocks/path/path_motions.hpp"
 #include "tests/blocks/path/path_random.hpp"
+#include "tests/blocks/path/random_path.hpp"
 #include "tests/count_of.hpp"
 
 using namespace lineshaft;
 using namespace lineshaft::test;
 
 namespace {
-
-PathVector random_direction(Random& random, std::size_t axes) {
-    for (;;) {
-        PathVector x{};
-        for (std::size_t i = 0; i < axes; ++i) x[i] = random.between(-1, 1);
-        const double size = std::hypot(x[0], x[1], x[2]);
-        if (size < 0.1 || size > 1) continue;
-        for (double& part : x) part /= size;
-        return x;
-    }
-}
 
 double distance(const PathVector& a, const PathVector& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

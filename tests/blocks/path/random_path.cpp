@@ -56,6 +56,17 @@ void append_cubic(RandomPath& out, Random& random, const PathVector& from, std::
 
 }  // namespace
 
+PathVector random_direction(Random& random, std::size_t axes) {
+    for (;;) {
+        PathVector x{};
+        for (std::size_t i = 0; i < axes; ++i) x[i] = random.between(-1, 1);
+        const double size = std::hypot(x[0], x[1], x[2]);
+        if (size < 0.1 || size > 1) continue;
+        for (double& part : x) part /= size;
+        return x;
+    }
+}
+
 RandomPath random_path(Random& random, std::size_t most) {
     RandomPath out;
     const auto axes = static_cast<std::size_t>(random.between(2, 6.999));
