@@ -16,7 +16,7 @@
 /// `element` of an array; GO(to) jumps to c, AGAIN(to) too and takes fuel; CALL and LEAVE begin and
 /// end a call; FAIL ends the scan with a fault.
 ///
-/// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
+/// In packed memory the lower half of c is where a value begins [bits], on from what slot d has,
 /// and the upper one, UPPER(to), its PackedFormat; of what a reference is to (`..._through`) the
 /// number of the value's shape.
 ///
@@ -50,15 +50,15 @@
     OP(number_of_reference, integer, "wtrr", if (!frames.number(at(b), U(c), U(d))) FAIL(out_of_range); put(a, frames.reached)) \
     OP(reference_of_number, integer, "trrr", frames.find_number(at(a), U(b), U(c), U(d))) \
     OP(reach, move, "wtn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
-    OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
-    OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(load_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(store_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_from_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_to_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_memory, move, "ttr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), BEHIND))) \
-    OP(fill_memory, move, "trr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), BEHIND))) \
-    OP(compare_memory, integer, "wttr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
+    OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(load_through(frames, at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
+    OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(store_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(load_text_through, text, "rtnr", LINESHAFT_ST_REACHED(load_text_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(store_text_through, text, "rtnr", LINESHAFT_ST_REACHED(store_text_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_from_through, move, "rtnr", LINESHAFT_ST_REACHED(copy_from_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_to_through, move, "rtnr", LINESHAFT_ST_REACHED(copy_to_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_memory, move, "ttr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(copy_memory(frames, at(a), at(b), I(c), BEHIND))) \
+    OP(fill_memory, move, "trr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(fill_memory(frames, at(a), U(b), I(c), BEHIND))) \
+    OP(compare_memory, integer, "wttr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(compare_memory(frames, at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \
@@ -142,7 +142,6 @@
     OP(sub_real, real, "wrr-", put(a, narrow(R(b) - R(c))))                                          \
     OP(mul_real, real, "wrr-", put(a, narrow(product(R(b), R(c)))))                                  \
     OP(div_real, real, "wrr-", put(a, narrow(R(b) / R(c))))                                          \
-    OP(mod_lreal, real, "wrr-", put(a, std::fmod(R(b), R(c))))                                       \
     OP(neg_lreal, real, "wr--", put(a, -R(b)))                                                       \
     OP(abs_lreal, real, "wr--", put(a, std::fabs(R(b))))                                             \
     OP(abs_signed, integer, "wr--", put(a, I(b) < 0 ? 0 - U(b) : U(b)))                              \
