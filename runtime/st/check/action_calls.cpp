@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
@@ -40,12 +41,23 @@ bool is_in_out(const Routine& block, const Token& name) {
     });
 }
 
+/// CoDeSys 2.3: the name of a PROGRAM or an instance alone is a call of it.
+bool is_called_alone(const Type& type, const Place& place) {
+    return type.is_instance() && lower(place.source->file->path).ends_with(".exp");
+}
+
 }  // namespace
 
 void check_action(Checking& c, Statement*& s) {
     Expression* name = s->value;
     if (name->kind == E::index || !find_action(c, *name)) {
-        if (check(c, s->value))
+        Expression* instance = make_copy(c, *name);
+        const Type* type = check(c, s->value);
+        if (type && is_called_alone(*type, s->place)) {
+            s = make_call_statement(c, make_call(c, *name, instance, {}));
+            return check(c, s);
+        }
+        if (type)
             c.warn(code::something_else_expected, s->place, "this does nothing",
                    "write 'name := value;', or a call 'name();'");
         return void(s = make_sequence(c, s->place, {}));

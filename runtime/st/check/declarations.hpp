@@ -37,7 +37,8 @@ void declare_routines(Checking& c);
 
 /// Whether a method declares an instance of its own block, or of one that has an instance of that
 /// again, if in a method alone, for which an instance has no room. It stands beside all blocks, so
-/// the method does not run within itself (Fault::runs_already).
+/// the method does not run within itself (Fault::runs_already). Of an interface's method: one that
+/// has that interface, so that its own method is called alike.
 bool is_its_own_block(Checking& c, const Routine& routine, const Type* type);
 /// Such a variable becomes in each call what an instance is that nothing was done with.
 void begin_anew(Checking& c, Routine& routine, Variable& variable);

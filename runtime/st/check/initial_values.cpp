@@ -168,6 +168,41 @@ void group_elements(Checking& c, Expression& list, const Type& array) {
     }
 }
 
+/// Leaves out what is behind the first `room` of a checked list.
+void leave_excess_out(Expression& list, Wide room) {
+    std::vector<Argument> kept;
+    for (Argument& argument : list.arguments) {
+        if (room == 0) break;
+        Expression& value = *argument.value;
+        const bool is_repeated = value.kind == E::repeated;
+        const auto parts = static_cast<Wide>(is_repeated ? value.arguments.size() : 1);
+        const Wide times = is_repeated ? value.operands[0]->constant.integer : 1;
+        const Wide whole = std::min(times, room / parts);
+        if (is_repeated) value.operands[0]->constant.integer = whole;
+        if (whole > 0) kept.push_back(argument);
+        room -= whole * parts;
+        if (whole == times) continue;
+        for (Wide i = 0; i < room; ++i)
+            kept.push_back(value.arguments[static_cast<std::size_t>(i)]);
+        room = 0;
+    }
+    list.arguments = std::move(kept);
+}
+
+/// IEC 61131-3, 6.4.4.5.2: the rightmost are ignored. Others refuse it.
+void check_excess(Checking& c, Expression& list, Wide count, Wide room) {
+    if (count <= room) return;
+    const std::string told =
+        fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
+                    static_cast<std::int64_t>(room));
+    constexpr const char* help = "leave some out, or make the array larger";
+    const Vendor vendor = list.place.dialect().vendor;
+    if (vendor != Vendor::none && vendor != Vendor::automation_studio)
+        return (void)c.fail(code::value_out_of_range, list.place, told, help);
+    c.warn(code::value_out_of_range, list.place, told + ": the last are ignored", help);
+    leave_excess_out(list, room);
+}
+
 /// Of several dimensions either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     group_elements(c, list, array);
@@ -188,11 +223,7 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
         const Wide one = static_cast<Wide>(std::max<std::size_t>(value->arguments.size(), 1));
         if (is_number) count += *times * one;
     }
-    if (count > room)
-        c.fail(code::value_out_of_range, list.place,
-               fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
-                           static_cast<std::int64_t>(room)),
-               "leave some out, or make the array larger");
+    check_excess(c, list, count, room);
 }
 
 /// CODESYS: a property that is set when the instance begins. False: there is none.

@@ -108,6 +108,13 @@ const Type* check_time(Checking& c, Expression*& slot) {
     return is_long ? &long_time_type(e.place) : &time_type;
 }
 
+/// Up to its first $00, which ends a text in CODESYS and Automation Studio.
+void end_at_zero(std::string& text, const Dialect& dialect) {
+    const bool ends =
+        dialect.vendor == Vendor::codesys || dialect.vendor == Vendor::automation_studio;
+    if (ends) text.resize(std::min(text.find('\0'), text.size()));
+}
+
 /// What stands in quotes, in bytes as the dialect has them. What has none is told.
 std::string written_text(Checking& c, const Expression& e) {
     if (!e.place.dialect().texts_are_windows_1252) return std::string(e.token.text);
@@ -122,8 +129,7 @@ std::string written_text(Checking& c, const Expression& e) {
 
 const Type* check_text(Checking& c, Expression& e) {
     const bool is_wide = e.token.quoted && has_wide_texts(e.place);
-    const auto text =
-        read_text(is_wide ? std::string(e.token.text) : written_text(c, e), e.token.quoted);
+    auto text = read_text(is_wide ? std::string(e.token.text) : written_text(c, e), e.token.quoted);
     if (!text)
         return c.fail(code::value_out_of_range, e.place,
                       "'$' is not followed by one of its characters",
@@ -132,6 +138,7 @@ const Type* check_text(Checking& c, Expression& e) {
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("the text has {} bytes", text->size()),
                       "a text has at most 32767 bytes");
+    end_at_zero(*text, e.place.dialect());
     e.constant.text = is_wide ? text_of_units(units_of(*text)) : *text;
     return is_wide ? &wide_string_type : &string_type;
 }

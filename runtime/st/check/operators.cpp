@@ -285,13 +285,21 @@ static void take_sign(Checking& c, Expression*& operand) {
         convert(c, operand, integer_type(type.bits, true));
 }
 
+/// `word := NOT 0`: a whole number without a type is one of those that are due.
+static bool take_width_of_result(Checking& c, Expression*& operand, const Type* expected) {
+    const Kind kind = operand->type->kind;
+    const bool is_open = kind == Kind::any_integer || kind == Kind::any_bits;
+    const bool is_due = expected && (expected->kind == Kind::integer || expected->is_bits());
+    return !is_open || !is_due || coerce(c, operand, expected->plain());
+}
+
 const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];
     const Type* type = check(c, operand, expected);
     if (!type) return nullptr;
     take_number_of_enumeration(c, operand);
+    if (e->op == Word::not_ && !take_width_of_result(c, operand, expected)) return nullptr;
     reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
-    if (e->op == Word::not_) take_width(c, operand, expected);
     if (e->op == Word::minus) take_sign(c, operand);
     type = operand->type;
     const bool fits = e->op == Word::not_ ? type->kind == Kind::boolean || type->is_bits()

@@ -93,13 +93,26 @@ const std::unordered_set<const Pou*>& parts_of(Checking& c, const Pou& block) {
     return it->second;
 }
 
+/// An interface of `block` asks for a method of that name, and the other block has that interface.
+bool share_interface_with(const Routine& block, std::string_view method, const Routine& other) {
+    const auto asks = [&](const Routine* interface) {
+        const auto is_it = [&](const Pou* own) { return same_name(own->name.text, method); };
+        return (std::ranges::any_of(interface->pou->methods, is_it) && is_a(other, *interface)) ||
+               share_interface_with(*interface, method, other);
+    };
+    return std::ranges::any_of(block.interfaces, asks) ||
+           (block.base && share_interface_with(*block.base, method, other));
+}
+
 }  // namespace
 
 bool is_its_own_block(Checking& c, const Routine& routine, const Type* type) {
-    const bool is_method = routine.owner && !routine.is_test() && !routine.is_prototype();
+    const bool is_method = routine.owner && !routine.is_test();
     if (!is_method || !type || type->kind != Type::Kind::block || !type->routine) return false;
-    return type == routine.owner->type ||
-           parts_of(c, *type->routine->pou).contains(routine.owner->pou);
+    const Routine& other = *type->routine;
+    if (routine.is_prototype()) return is_a(other, *routine.owner);
+    return type == routine.owner->type || parts_of(c, *other.pou).contains(routine.owner->pou) ||
+           share_interface_with(*routine.owner, routine.pou->name.text, other);
 }
 
 void begin_anew(Checking& c, Routine& routine, Variable& variable) {
@@ -114,6 +127,7 @@ Variable& take_own_instance(Checking& c, Routine& routine, Variable& input) {
     input.section = Section::in_out;
     input.constant = input.used = true;
     input.space = Space::reference;
+    if (routine.is_prototype()) return input;
     Variable& copy =
         keep_beside(c, input, fmt::format("{}.{}", routine.name, input.text), input.type);
     assign_in_each_call(c, routine, copy, input);
@@ -121,6 +135,10 @@ Variable& take_own_instance(Checking& c, Routine& routine, Variable& input) {
 }
 
 void give_own_instance(Checking& c, Routine& routine, Variable& result) {
+    if (routine.is_prototype()) {
+        result.type = &make_reference(c, Referring::alias, result.type);
+        return;
+    }
     Variable& given =
         keep_beside(c, result, fmt::format("{} of {}", result.text, routine.name), result.type);
     begin_anew(c, routine, given);

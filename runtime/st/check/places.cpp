@@ -298,9 +298,10 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
     const bool is_block = of && (of->kind == Kind::block || is_prelude(target.token));
-    const bool is_siemens_own = is_block && target.place.dialect().sets_variables_of_instances &&
-                                (variable->section == Section::local ||
-                                 variable->section == Section::output || is_kept_in_out(*variable));
+    const bool is_siemens_own =
+        target.place.dialect().sets_variables_of_instances &&
+        (variable->section == Section::output ||
+         (is_block && (variable->section == Section::local || is_kept_in_out(*variable))));
     const bool is_local = variable->section == Section::local;
     const bool is_public = is_local && (variable->access == Access::public_ ||  // 6.6.5.10
                                         (is_library(target.token) && of && !is_block));

@@ -74,6 +74,17 @@ std::string without_values(std::string_view name) {
     return lower(name.substr(0, name.find('<')));
 }
 
+bool is_of_declarations(const std::string& path) {
+    return lower(path).ends_with(".fun");
+}
+
+/// One is B&R's `.fun`, and the other may have bodies of what it declares.
+bool are_halves(const std::string& a, const std::string& b) {
+    if (is_of_declarations(a) == is_of_declarations(b)) return false;
+    const std::string& declares = is_of_declarations(a) ? a : b;
+    return nearness(a, b) == declares.find_last_of('/') + 1;
+}
+
 auto is_in(const std::set<std::string>& names) {
     return [&](const std::string& name) { return names.contains(name); };
 }
@@ -281,11 +292,25 @@ void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to
     const auto add = [&](const Entry* found) {
         if (std::ranges::find(chosen, found) == chosen.end()) chosen.push_back(found);
     };
+    const auto add_halves = [&](const std::string& name) {
+        const auto declaring = with_type_.find(name);
+        if (declaring == with_type_.end()) return;
+        for (const std::size_t place : declaring->second) {
+            const Entry& half = entries_[place];
+            const auto is_its = [&](const Entry* e) {
+                return e->types.contains(name) && are_halves(e->file->path, half.file->path);
+            };
+            if (std::ranges::any_of(chosen, is_its)) add(&half);
+        }
+    };
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Entry& user = *chosen[i];
         const auto add_types = [&](const std::string& name) {
             if (!has_type(name)) std::ranges::for_each(nearest(name, user, to), add);
+            add_halves(name);
         };
+        if (!is_of_declarations(user.file->path))
+            for (const auto& [name, full] : user.types) add_halves(name);
         for (const Entry& entry : entries_)
             if (std::ranges::any_of(user.usings, is_in(entry.own_spaces))) add(&entry);
         std::ranges::for_each(user.used_types, add_types);

@@ -30,7 +30,7 @@ class SourcePool {
     /// What `tests` needs: `x.st` of the same folder for `test_x.st` and `x_test.st`, and then
     /// every file that declares a name which the tests or a file found so far use and do not
     /// declare. Of several that declare it the nearest, by path, one for each namespace that has
-    /// it. So files that tests do not name
+    /// it; of B&R's a `.fun` and the bodies beside it together. So files that tests do not name
     /// may hold whatever they like, and two that declare the same do not meet.
     std::vector<std::shared_ptr<const SourceFile>> needed_by(
         const std::shared_ptr<const SourceFile>& tests) const;

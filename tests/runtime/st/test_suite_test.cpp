@@ -185,3 +185,27 @@ TEST_CASE("Files of tests find the sources that they name", "[st]") {
           "a/supply.st a/list.st ");
     CHECK(names("a/y.st", "TEST 'y' VAR s : Supply; END_VAR END_TEST") == "a/supply.st ");
 }
+
+TEST_CASE("Files of tests find bodies beside what B&R declares in a file of its own", "[st]") {
+    const auto file = [](const std::string& path, const std::string& text) {
+        return std::make_shared<const SourceFile>(SourceFile{path, text});
+    };
+    st::SourcePool pool;
+    pool.add(file("lib/Lib.fun",
+                  "FUNCTION Twice : REAL VAR_INPUT x : REAL; END_VAR END_FUNCTION "
+                  "FUNCTION_BLOCK Adder VAR_INPUT x : REAL; END_VAR END_FUNCTION_BLOCK"));
+    pool.add(file("lib/Twice.st", "FUNCTION Twice Twice := 2.0 * x; END_FUNCTION"));
+    pool.add(file("lib/parts/Adder.st", "FUNCTION_BLOCK Adder END_FUNCTION_BLOCK"));
+    pool.add(file("other/Adder.st", "FUNCTION_BLOCK Adder END_FUNCTION_BLOCK"));
+    const auto names = [&](const std::string& path, const std::string& text) {
+        std::string found;
+        for (const auto& source : pool.needed_by(file(path, text))) found += source->path + " ";
+        return found;
+    };
+    CHECK(names("lib/y.st", "TEST 'y' ASSERT_EQ(Twice(1.0), REAL#2.0); END_TEST") ==
+          "lib/Lib.fun lib/Twice.st ");
+    CHECK(names("lib/y.st", "TEST 'y' VAR a : Adder; END_VAR a(x := Twice(1.0)); END_TEST") ==
+          "lib/Lib.fun lib/parts/Adder.st lib/Twice.st ");
+    CHECK(names("lib/twice_test.st", "TEST 'y' END_TEST") == "lib/Twice.st lib/Lib.fun ");
+    CHECK(names("other/y.st", "TEST 'y' VAR a : Adder; END_VAR END_TEST") == "other/Adder.st ");
+}
