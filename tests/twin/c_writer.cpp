@@ -333,6 +333,16 @@ class CWriter {
         return routine.has_instances() || routine.owner;
     }
 
+    /// What is no scalar is given and returned by its address: clang loses bytes of a struct in
+    /// which a number stands across two words.
+    static bool is_by_address(const Type& type) {
+        return !type.is_scalar() && !type.is_reference();
+    }
+
+    std::string returned_type(const Variable* result) {
+        return result && !is_by_address(*result->type) ? c_type(*result->type) : "void";
+    }
+
     /// `dispatches`: what finds the method of the instance that is given.
     std::string head(const Routine& routine, bool dispatches) {
         std::string parameters;
@@ -344,12 +354,14 @@ class CWriter {
         if (block) add((dispatches ? "block" : c_type(*block->type)) + "* self");
         for (const Variable& v : routine.variables) {
             if (is_block || v.space == Space::constant) continue;
-            if (v.section == Section::input) add(c_type(*v.type) + " " + name_of(v));
+            if (v.section == Section::input)
+                add(c_type(*v.type) + (is_by_address(*v.type) ? "* in_" : " ") + name_of(v));
             if (v.section == Section::in_out) add(c_type(*v.type) + "* " + name_of(v));
             if (v.section == Section::output) add(c_type(*v.type) + "* out_" + name_of(v));
         }
         const Variable* result = routine.result;
-        return fmt::format("static {} {}({})", result ? c_type(*result->type) : "void",
+        if (result && is_by_address(*result->type)) add(c_type(*result->type) + "* returned");
+        return fmt::format("static {} {}({})", returned_type(result),
                            dispatches ? dispatch_of(routine) : name_of(routine),
                            parameters.empty() ? "void" : parameters);
     }
@@ -385,12 +397,16 @@ class CWriter {
         for (const Variable& v : wanted.variables) {
             if (v.space == Space::constant || !(is_input(v) || v.section == Section::output))
                 continue;
-            const std::string name =
-                v.section == Section::output ? "out_" + name_of(v) : name_of(v);
-            given += v.section == Section::input ? fmt::format(", *({}*)&{}", types.front(), name)
-                                                 : ", (void*)" + name;
+            const bool is_by_value = v.section == Section::input && !is_by_address(*v.type);
+            const std::string name = (v.section == Section::output                  ? "out_"
+                                      : v.section == Section::input && !is_by_value ? "in_"
+                                                                                    : "") +
+                                     name_of(v);
+            given +=
+                is_by_value ? fmt::format(", *({}*)&{}", types.front(), name) : ", (void*)" + name;
             types.erase(types.begin());
         }
+        if (found.result && is_by_address(*found.result->type)) given += ", (void*)returned";
         return given;
     }
 
@@ -409,11 +425,11 @@ class CWriter {
             const std::string call =
                 fmt::format("{}(({}*)self{})", name_of(*found), c_type(*of.type),
                             wanted.owner ? passed_on(wanted, *found) : "");
-            if (wanted.result)
+            if (wanted.result && !is_by_address(*wanted.result->type))
                 put("{{ {} r = {}; return *({}*)&r; }}", c_type(*found->result->type), call,
                     c_type(*wanted.result->type));
             else
-                put("return {};", call);
+                put("{}; return;", call);
         }
         put("}}\n__builtin_trap();\n}}");
     }
@@ -426,6 +442,10 @@ class CWriter {
         if (has_instance(routine))
             put("const i64 ran = self->{0};\nself->{0} = twin_scan;", mark_of(routine));
         put("++twin_calls;");
+        for (const Variable& v : routine.variables)
+            if (!is_block && v.section == Section::input && v.space != Space::constant &&
+                is_by_address(*v.type))
+                put("{0} {1} = *in_{1};", c_type(*v.type), name_of(v));
         for (const Variable& v : routine.variables) {
             if (v.space != Space::frame || (is_block ? v.section != Section::temp : is_input(v)))
                 continue;
@@ -443,7 +463,9 @@ class CWriter {
         for (const Variable& v : routine.variables)
             if (is_eno(v)) put("twin_eno = {}{};", is_block ? "self->" : "", name_of(v));
         if (has_instance(routine)) end_on_instance(routine);
-        if (result) put("return {};", name_of(*result));
+        if (result)
+            put("{} {};", is_by_address(*result->type) ? "*returned =" : "return",
+                name_of(*result));
         put("}}");
         routine_ = nullptr;
     }
@@ -1135,19 +1157,24 @@ class CWriter {
             if (is_input(*argument.variable)) values[argument.variable] = argument_of(argument);
         for (const Variable& v : routine.variables) {
             if (v.space == Space::constant || v.section == Section::result) continue;
-            if (is_input(v) && values.contains(&v)) add(values[&v]);
+            const bool is_address = v.section == Section::input && is_by_address(*v.type);
+            if (is_input(v) && values.contains(&v)) add((is_address ? "&" : "") + values[&v]);
             if (v.section != Section::output &&
                 (v.section != Section::input || values.contains(&v)))
                 continue;
             const std::string name = new_name();
             put("{} {};", c_type(*v.type), name);
             if (v.section == Section::input) begin(v, name);
-            add((v.section == Section::output ? "&" : "") + name);
+            add((v.section == Section::output || is_address ? "&" : "") + name);
             values[&v] = name;
         }
         const std::string name = new_name();
         if (e.is_dispatched) put("twin_line = {};", line_);
-        if (routine.result)
+        if (routine.result && is_by_address(*routine.result->type)) {
+            put("{} {};", c_type(*routine.result->type), name);
+            add("&" + name);
+            put("{}({});", callee, given);
+        } else if (routine.result)
             put("{} {} = {}({});", c_type(*routine.result->type), name, callee, given);
         else
             put("{}({});", callee, given);
@@ -1165,7 +1192,7 @@ class CWriter {
         const std::string type = c_type(*v.type);
         if (v.section == Section::in_out)
             return made(type + "*", fmt::format("({}*)&{}", type, place(*argument.value)));
-        if (v.type->is_scalar() || v.type->is_reference()) return value(*argument.value);
+        if (!is_by_address(*v.type)) return value(*argument.value);
         const std::string name = new_name();
         put("{} {};", type, name);
         assign(name, *v.type, *argument.value);
