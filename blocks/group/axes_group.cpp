@@ -136,6 +136,7 @@ void AxesGroup::come_to_stand(const Context& context) {
     release(context);
     if (state == GroupState::moving || (state == GroupState::stopping && !holder.exists()))
         state = GroupState::standby;
+    if (leaver.exists()) ungroup(context);
 }
 
 void AxesGroup::release(const Context& context) {

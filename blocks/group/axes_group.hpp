@@ -57,6 +57,7 @@ struct AxesGroup {
     Holder interrupter;  ///< MC_GroupInterrupt
     Holder overriding;   ///< the MC_GroupSetOverride whose factor counts
     Holder resetter;     ///< MC_GroupReset, until all stand
+    Holder leaver;       ///< MC_UngroupAllAxes, until the group stands
     Path path;
     Aside aside;
     std::array<std::array<PathPiece, look_ahead>, 2> rings{};
@@ -119,7 +120,6 @@ struct AxesGroup {
     MotionError administer(const Context& context, GroupJob& job);
     MotionError add_axis(const Context& context, const GroupRequest& request);
     MotionError remove_axis(const Context& context, const GroupRequest& request);
-    MotionError ungroup(const Context& context);
     MotionError enable();
     void disable(const Context& context);
     MotionError set_override(const Context& context, GroupJob& job);
@@ -133,6 +133,8 @@ struct AxesGroup {
     void hold(const Context& context, GroupJob& job);
     void begin_reset(const Context& context, GroupJob& job);
     void finish_reset(const Context& context);
+    void begin_to_ungroup(const Context& context, GroupJob& job);
+    void ungroup(const Context& context);
     void brake(const PathLimit& limit = no_path_limit);
     void fail(const Context& context, MotionError why);
     void abort_all(const Context& context, Progress how, MotionError why = MotionError::none);

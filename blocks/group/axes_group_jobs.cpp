@@ -46,6 +46,7 @@ void AxesGroup::take(const Context& context, GroupJob& job) {
     if (request.command == stop || request.command == halt) return hold(context, job);
     if (request.command == interrupt) return begin_interrupt(context, job);
     if (request.command == reset) return begin_reset(context, job);
+    if (request.command == GroupCommand::ungroup) return begin_to_ungroup(context, job);
     const MotionError why = administer(context, job);
     tell(job, why == MotionError::none ? Progress::done : Progress::failed, why);
 }
@@ -72,8 +73,6 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
             return add_axis(context, job.request);
         case GroupCommand::remove_axis:
             return remove_axis(context, job.request);
-        case GroupCommand::ungroup:
-            return ungroup(context);
         case GroupCommand::enable:
             return enable();
         case GroupCommand::disable:
@@ -137,21 +136,13 @@ MotionError AxesGroup::remove_axis(const Context& context, const GroupRequest& r
     return MotionError::none;
 }
 
-MotionError AxesGroup::ungroup(const Context& context) {
-    if (following != 0) return MotionError::wrong_state;
-    for (std::size_t i = 0; i < most_path_axes; ++i)
-        if (Axis* const removed = axis(context, i)) removed->group = nowhere;
-    axes.fill(nowhere);
-    disable(context);
-    return MotionError::none;
-}
-
 std::size_t AxesGroup::axis_count() const {
     return axes.size() - static_cast<std::size_t>(std::ranges::count(axes, nowhere));
 }
 
 MotionError AxesGroup::enable() {
     if (state != GroupState::disabled) return MotionError::none;
+    if (leaver.exists()) return MotionError::wrong_state;
     if (axis_count() < 2) return MotionError::too_few_axes;
     state = GroupState::standby;
     return MotionError::none;
@@ -301,6 +292,22 @@ void AxesGroup::finish_reset(const Context& context) {
     error_id = MotionError::none;
     state = GroupState::standby;
     end(context, resetter, Progress::done);
+}
+
+void AxesGroup::begin_to_ungroup(const Context& context, GroupJob& job) {
+    disable(context);
+    end(context, leaver, Progress::aborted);
+    leaver = {context.place_of(job), job.ticket, job.request.command};
+    tell(job, Progress::active);
+    if (following == 0) ungroup(context);
+}
+
+void AxesGroup::ungroup(const Context& context) {
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        if (Axis* const removed = axis(context, i)) removed->group = nowhere;
+    axes.fill(nowhere);
+    disable(context);
+    end(context, leaver, Progress::done);
 }
 
 void AxesGroup::brake(const PathLimit& limit) {

@@ -16,7 +16,7 @@ constexpr GroupStateRow group_rows[] = {
     //                                                      in Dis  Sby  Mov  Hom  Stp  Err
     {G::add_axis,               "MC_AddAxisToGroup",          {Dis, Sby, no,  no,  no,  Err}},
     {G::remove_axis,            "MC_RemoveAxisFromGroup",     {Dis, Sby, no,  no,  no,  Err}},
-    {G::ungroup,                "MC_UngroupAllAxes",          {Dis, Dis, no,  no,  no,  Dis}},
+    {G::ungroup,                "MC_UngroupAllAxes",          {Dis, Dis, Dis, Dis, Dis, Dis}},
     {G::enable,                 "MC_GroupEnable",             {Sby, Sby, Mov, Hom, Stp, no }},
     {G::disable,                "MC_GroupDisable",            {Dis, Dis, Dis, Dis, Dis, Dis}},
     {G::reset,                  "MC_GroupReset",              {Dis, Sby, Mov, Hom, Stp, Sby}},

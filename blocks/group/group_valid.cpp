@@ -138,8 +138,9 @@ bool is_valid(const AxesGroup& group, const KeptState& machine) {
                     group.rings[static_cast<std::size_t>(1 - group.ring_in_use)]) &&
            is_valid(group.holder, machine) && is_valid(group.interrupter, machine) &&
            is_valid(group.overriding, machine) && is_valid(group.resetter, machine) &&
-           machine.is_task(group.task) && is_count(group.scan_index) &&
-           machine.is_moment(group.time) && (!machine.is_live || lists_are_valid(group, machine));
+           is_valid(group.leaver, machine) && machine.is_task(group.task) &&
+           is_count(group.scan_index) && machine.is_moment(group.time) &&
+           (!machine.is_live || lists_are_valid(group, machine));
 }
 
 void mend(AxesGroup& group, const KeptState& machine) {

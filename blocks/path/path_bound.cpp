@@ -55,6 +55,7 @@ PathBound bound_of_spline(const PathCurve& c, std::size_t axis) {
     const PathPolynomial x{c.origin[axis], c.u[axis],      c.w[axis],
                            c.slope[axis],  c.fourth[axis], c.fifth[axis]};
     PathBound out;
+    if (std::all_of(x.begin() + 1, x.end(), [](double part) { return part == 0; })) return out;
     for (int k = 0; k < parts; ++k) {
         const double middle = (k + 0.5) / parts;
         Sizes m = greatest_within(c.map, middle, half);

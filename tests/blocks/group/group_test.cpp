@@ -439,28 +439,30 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("group: all axes leave it at once, and can join another one") {
+TEST_CASE("group: all axes leave it as soon as they stand, and can join another one") {
     MotionBench bench(table_with(R"(
   other: {type: axes_group, task: servo}
   again: {type: MC_AddAxisToGroup, task: servo, AxesGroup: other, Axis: y}
   line: {type: MC_MoveLinearAbsolute, task: servo, AxesGroup: group, Position1: 10 mm, Position4: 350 deg}
   ungroup: {type: MC_UngroupAllAxes, task: servo, AxesGroup: group}
+  back: {type: MC_GroupEnable, task: servo, AxesGroup: group, Execute: line.CommandAborted}
 )"));
     bench.step(20);
     bench.set("line.Execute", true);
     bench.step(50);
     bench.set("ungroup.Execute", true);
     bench.step(2);
-    CHECK(bench.is("ungroup.Error"));
-    bench.set("ungroup.Execute", false);
-    REQUIRE(comes(bench, "line.Done"));
-    bench.set("ungroup.Execute", true);
-    bench.step(2);
-    CHECK(bench.is("ungroup.Done"));
+    CHECK((bench.is("line.CommandAborted") && bench.is("ungroup.Busy")));
     CHECK(state(bench) == "disabled");
+    CHECK(bench.number("group.velocity") > 0);
     bench.set("again.Execute", true);
     bench.step(2);
-    CHECK(bench.is("again.Done"));
+    CHECK((bench.is("again.Error") && bench.is("back.Error")));
+    bench.set("again.Execute", false);
+    REQUIRE(comes(bench, "ungroup.Done"));
+    CHECK(bench.number("x.velocity") == 0);
+    bench.set("again.Execute", true);
+    CHECK(comes(bench, "again.Done", 3));
 }
 
 TEST_CASE("group: what cannot be a member is refused") {
