@@ -400,6 +400,70 @@ static std::optional<const Type*> check_put_in(Checking& c, Expression*& e, cons
     return check_function(c, e, expected);
 }
 
+/// `timer.TON(...)`, `station.ReadStatus()`, `motor.Start(...)`. Empty: what is called is none of
+/// these.
+static std::optional<const Type*> call_of_member(Checking& c, Expression*& e, bool as_statement) {
+    const Expression& callee = *e->operands[0];
+    const Type* of = check(c, e->operands[0]->operands[0]);
+    if (!of) return nullptr;
+    if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
+        note_timer(c, *callee.operands[0], *of->standard);
+        e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
+        return check_instance_call(c, e, *of, as_statement);
+    }
+    if (const Type* timer = timer_of(c, *of, callee.token)) {
+        e = make_call(c, *e, callee.operands[0], e->arguments);  // `#any.TOF(...)`
+        e->called_as = timer->standard;
+        note_timer(c, *e->operands[0], *timer->standard);
+        return check_instance_call(c, e, *of, as_statement);
+    }
+    if (Routine* part = find_part(c, *of, callee.token.text); part && as_statement) {
+        e = e->operands[0];
+        return check_part(c, e, *part);
+    }
+    if (of->kind == Kind::block || of->kind == Kind::interface) {
+        if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
+            Routine& method = overload_of(c, *e, of->routine->overloads, *first);
+            if (!method.pou->follows_init &&
+                !is_accessible(c, method.pou->access, *method.owner, callee.token))
+                return nullptr;
+            return check_method_call(c, e, method, *callee.operands[0], as_statement);
+        }
+    }
+    return {};
+}
+
+/// A method of its own block, or a function. Empty: an instance is called.
+static std::optional<const Type*> call_by_name(Checking& c, Expression*& e, bool as_statement,
+                                               const Type* expected) {
+    const Expression& callee = *e->operands[0];
+    if (const Routine* block = block_with_method(c, callee.token);
+        block && !means_function(c, *e, *find_in(block->methods, callee.token.text))) {
+        Routine& first = *find_in(block->methods, callee.token.text);
+        Routine& method = overload_of(c, *e, block->overloads, first);
+        e->is_dispatched = method.is_replaced;
+        return check_routine_call(c, e, method, as_statement);
+    }
+    if (!find_variable(c, callee.token)) declare_program(c, callee.token);
+    if (is_instance(c, callee.token) || is_own_instance(c, callee)) return {};
+    const std::string_view name = callee.token.text;
+    Routine* routine = c.find_routine(callee.token);
+    if (routine && take_as_variant(c, e, *routine)) return check_call(c, e, as_statement, expected);
+    if (routine && !routine->type && !is_of_dynamic_memory(name)) {
+        if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
+            !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||
+            !is_given_bytes(c, *e, *routine))
+            return nullptr;
+        return check_routine_call(c, e, function_called(c, *e, *routine), as_statement);
+    }
+    const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
+                             (find_standard_function(name) || !find_variable(c, callee.token));
+    if (is_function && find_test_statement(name) != TestCall::none)
+        return check_test_statement(c, *e, as_statement);
+    if (is_function) return check_function(c, e, expected);
+    return {};
+}
+
 const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Type* expected) {
     if (const auto given = check_put_in(c, e, expected)) return *given;
     if (Expression* assertion = c.has_tests ? assertion_call(c, *e) : nullptr) {
@@ -412,61 +476,10 @@ const Type* check_call(Checking& c, Expression*& e, bool as_statement, const Typ
     const Expression& callee = *e->operands[0];
     if (callee.kind == E::member) name_block_of_list(c, *e->operands[0]);
     if (refuse_member_of_namespace(c, callee)) return nullptr;
-    if (callee.kind == E::member) {
-        const Type* of = check(c, e->operands[0]->operands[0]);
-        if (!of) return nullptr;
-        if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
-            note_timer(c, *callee.operands[0], *of->standard);
-            e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
-            return check_instance_call(c, e, *of, as_statement);
-        }
-        if (const Type* timer = timer_of(c, *of, callee.token)) {
-            e = make_call(c, *e, callee.operands[0], e->arguments);  // `#any.TOF(...)`
-            e->called_as = timer->standard;
-            note_timer(c, *e->operands[0], *timer->standard);
-            return check_instance_call(c, e, *of, as_statement);
-        }
-        if (Routine* part = find_part(c, *of, callee.token.text); part && as_statement) {
-            e = e->operands[0];
-            return check_part(c, e, *part);
-        }
-        if (of->kind == Kind::block || of->kind == Kind::interface) {
-            if (Routine* first = find_in(of->routine->methods, callee.token.text)) {
-                Routine& method = overload_of(c, *e, of->routine->overloads, *first);
-                if (!method.pou->follows_init &&
-                    !is_accessible(c, method.pou->access, *method.owner, callee.token))
-                    return nullptr;
-                return check_method_call(c, e, method, *callee.operands[0], as_statement);
-            }
-        }
-    }
+    if (callee.kind == E::member)
+        if (const auto given = call_of_member(c, e, as_statement)) return *given;
     if (callee.kind == E::name)
-        if (const Routine* block = block_with_method(c, callee.token);
-            block && !means_function(c, *e, *find_in(block->methods, callee.token.text))) {
-            Routine& first = *find_in(block->methods, callee.token.text);
-            Routine& method = overload_of(c, *e, block->overloads, first);
-            e->is_dispatched = method.is_replaced;
-            return check_routine_call(c, e, method, as_statement);
-        }
-    if (callee.kind == E::name && !find_variable(c, callee.token)) declare_program(c, callee.token);
-    if (callee.kind == E::name && !is_instance(c, callee.token) && !is_own_instance(c, callee)) {
-        const std::string_view name = callee.token.text;
-        Routine* routine = c.find_routine(callee.token);
-        if (routine && take_as_variant(c, e, *routine))
-            return check_call(c, e, as_statement, expected);
-        if (routine && !routine->type && !is_of_dynamic_memory(name)) {
-            if (!take_query(c, e, *routine) || !take_memory(c, e, *routine) ||
-                !take_names(c, e, *routine) || !take_bytes(c, e, *routine) ||
-                !is_given_bytes(c, *e, *routine))
-                return nullptr;
-            return check_routine_call(c, e, function_called(c, *e, *routine), as_statement);
-        }
-        const bool is_function = (routine || !callee.token.quoted) && !callee.token.local &&
-                                 (find_standard_function(name) || !find_variable(c, callee.token));
-        if (is_function && find_test_statement(name) != TestCall::none)
-            return check_test_statement(c, *e, as_statement);
-        if (is_function) return check_function(c, e, expected);
-    }
+        if (const auto given = call_by_name(c, e, as_statement, expected)) return *given;
     const Type* type = check(c, e->operands[0]);
     if (!type) return nullptr;
     if (as_statement && e->arguments.empty())

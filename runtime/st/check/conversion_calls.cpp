@@ -98,24 +98,65 @@ bool is_conversion(const Type& from, const Type& to, const Dialect& dialect) {
     return to.is_scalar() || to.kind == Kind::text;
 }
 
+/// The type that the name of a conversion has so; null: there is none. `is_told`: that was told.
+const Type* find_converted(Checking& c, const Expression& e, std::string_view name, bool& is_told) {
+    if (const Type* type = find_elementary(name)) return in_dialect(type, e.place);
+    if (const Type* type = find_codesys_type(name)) return type;
+    if (same_name(name, s5time_type.name)) return &s5time_type;
+    Token named = e.token;
+    named.text = name;
+    is_told |= c.is_lost(named);
+    const NamedType* type = c.look_up(&Names::types, named);
+    return type ? type->type : nullptr;
+}
+
+/// A text for a text, a pointer and THIS of a block stay what they are. Empty: it is none of these.
+std::optional<const Type*> take_unconverted(Checking& c, Expression*& e, Expression*& value,
+                                            const Type& target) {
+    const Type& from = *value->type;
+    const bool is_text = from.kind == Kind::text && target.kind == Kind::text;
+    const bool is_this = value->kind == E::self && (target.is_integer() || target.is_bits());
+    if (!is_text && !is_this && !from.is_pointer()) return {};
+    if (!is_text && !coerce(c, value, target)) return nullptr;
+    e = value;
+    if (!is_text || from.is_wide == target.is_wide) return e->type;
+    recode(c, e, target);
+    return &target;
+}
+
+const Type* make_written(Checking& c, Expression*& e, Expression*& value, const Type& target,
+                         bool truncates) {
+    const Type& from = *value->type;
+    const Place place = e->place;
+    const Dialect& dialect = place.dialect();
+    const Type& bits = from.kind == Kind::bits ? from : target;
+    const bool counts = dialect.bits_count_in_reals && bits.kind == Kind::bits &&
+                        (from.is_real() || target.is_real());
+    const bool rounds_away = from.is_real() && !truncates && dialect.rounds_away;
+    const auto become = [&](const Type& type) {
+        const bool is_rounded = value->type->is_real() && (type.is_integer() || type.is_bits());
+        convert(c, value, type);
+        value->conversion.rounds_away = value->kind == E::converted && rounds_away && is_rounded;
+    };
+    if (counts) become(integer_type(bits.bits, false));
+    become(target);
+    e = value;
+    e->place = place;
+    e->conversion.is_written = true;
+    e->conversion.truncates = e->kind == E::converted && truncates;
+    e->conversion.has_sign = target.kind == Kind::text && from.is_integer() && from.is_signed &&
+                             dialect.texts_of_integers_have_signs;
+    return &target;
+}
+
 }  // namespace
 
 std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name) {
     const auto read = read_conversion(name);
     if (!read) return {};
     bool is_told = false;
-    const auto find = [&](std::string_view text) -> const Type* {
-        if (const Type* type = find_elementary(text)) return in_dialect(type, e->place);
-        if (const Type* type = find_codesys_type(text)) return type;
-        if (same_name(text, s5time_type.name)) return &s5time_type;
-        Token named = e->token;
-        named.text = text;
-        is_told |= c.is_lost(named);
-        const NamedType* type = c.look_up(&Names::types, named);
-        return type ? type->type : nullptr;
-    };
-    const Type* target = find(read->to);
-    const Type* source = read->from.empty() ? nullptr : find(read->from);
+    const Type* target = find_converted(c, *e, read->to, is_told);
+    const Type* source = read->from.empty() ? nullptr : find_converted(c, *e, read->from, is_told);
     if (!target || (!read->from.empty() && !source))
         return is_told ? std::optional<const Type*>(nullptr) : std::nullopt;
     const bool is_function = read->truncates && read->from.empty() && target->is_real();
@@ -131,26 +172,16 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     const bool is_numbered =
         value->type->is_pointer() && (target->kind == Kind::text || target->is_real());
     if (is_numbered && !coerce(c, value, ulint_type)) return nullptr;
+    if (const auto type = take_unconverted(c, e, value, *target)) return *type;
     const Type& from = *value->type;
-    const bool is_text = from.kind == Kind::text && target->kind == Kind::text;
-    const bool is_this = value->kind == E::self && (target->is_integer() || target->is_bits());
-    if (is_text || is_this || from.is_pointer()) {
-        if (!is_text && !coerce(c, value, *target)) return nullptr;
-        e = value;
-        if (!is_text || from.is_wide == target->is_wide) return e->type;
-        recode(c, e, *target);
-        return target;
-    }
     const Dialect& dialect = value->place.dialect();
     if (!is_conversion(from, *target, dialect))
         return c.fail(
             code::type_does_not_fit, e->place,
             fmt::format("there is no conversion of {} to {}", describe(from), describe(*target)));
-    const bool are_texts = from.kind == Kind::text && target->kind == Kind::text;
     const bool is_kept = (dialect.reckons_in > from.bits && from.is_integer()) ||
                          (dialect.times_count_ms && from.counts_ns != target->counts_ns);
-    if (are_texts ||
-        (same_type(from, *target) && from.is_character == target->is_character && !is_kept)) {
+    if (same_type(from, *target) && from.is_character == target->is_character && !is_kept) {
         e = make_copy(c, *value);
         return e->type;
     }
@@ -162,25 +193,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     if (from.texts_are_names && target->kind == Kind::text && is_constant(*value))
         if (const std::string* text = from.name_of(value->constant.integer))
             return become(c, e, *target, {.text = *text});
-    const Place place = e->place;
-    const Type& bits = from.kind == Kind::bits ? from : *target;
-    const bool counts = place.dialect().bits_count_in_reals && bits.kind == Kind::bits &&
-                        (from.is_real() || target->is_real());
-    const bool rounds_away = from.is_real() && !read->truncates && place.dialect().rounds_away;
-    const auto become = [&](const Type& type) {
-        const bool is_rounded = value->type->is_real() && (type.is_integer() || type.is_bits());
-        convert(c, value, type);
-        value->conversion.rounds_away = value->kind == E::converted && rounds_away && is_rounded;
-    };
-    if (counts) become(integer_type(bits.bits, false));
-    become(*target);
-    e = value;
-    e->place = place;
-    e->conversion.is_written = true;
-    e->conversion.truncates = e->kind == E::converted && read->truncates;
-    e->conversion.has_sign = target->kind == Kind::text && from.is_integer() && from.is_signed &&
-                             place.dialect().texts_of_integers_have_signs;
-    return target;
+    return make_written(c, e, value, *target, read->truncates);
 }
 
 }  // namespace lineshaft::st

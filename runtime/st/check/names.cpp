@@ -322,6 +322,19 @@ bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
             variable->type->kind != Kind::text);
 }
 
+/// A value that is named without its enumeration. Empty: none is called so.
+std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
+    const Token& token = e->token;
+    const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token);
+    if (!value) return {};
+    if (value->ambiguous)
+        return c.fail(code::not_declared, e->place,
+                      fmt::format("'{}' is a value of several enumerations", token.text),
+                      fmt::format("write {}#{}", value->type->name, token.text));
+    c.note_value(token.place, *value->type, value->index);
+    return become_value(c, e, *value->type, value->index);
+}
+
 }  // namespace
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
@@ -361,14 +374,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
         return become(c, e, *expected, {});
     if (same_name(token.text, "true") || same_name(token.text, "false"))
         return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
-    if (const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token)) {
-        if (value->ambiguous)
-            return c.fail(code::not_declared, e->place,
-                          fmt::format("'{}' is a value of several enumerations", token.text),
-                          fmt::format("write {}#{}", value->type->name, token.text));
-        c.note_value(token.place, *value->type, value->index);
-        return become_value(c, e, *value->type, value->index);
-    }
+    if (const auto type = check_value_alone(c, e)) return *type;
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
     if (is_for_object && !token.local && (token.quoted || !c.is_in_test()))

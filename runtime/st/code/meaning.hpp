@@ -443,28 +443,6 @@ struct Frames {
     /// A fault of what is done with that, of which messages name the variable.
     Fault told(Fault fault, const std::byte* reference) const;
 
-    // What a reference is to as the bytes that a controller has there, so many bits behind, and of
-    // that shape. `slots` is the address of a text's or a value's slots.
-    Fault load_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                       std::uint64_t next);
-    Fault store_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                        std::uint64_t value, std::uint64_t next);
-    Fault load_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                            std::uint64_t slots, std::uint64_t next);
-    Fault store_text_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                             std::uint64_t slots, std::uint64_t next);
-    Fault copy_from_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                            std::uint64_t slots, std::uint64_t next);
-    Fault copy_to_through(const std::byte* reference, std::uint64_t bit, std::uint32_t shape,
-                          std::uint64_t slots, std::uint64_t next);
-    Fault copy_memory(const std::byte* to, const std::byte* from, std::int64_t count,
-                      std::uint64_t next);
-    Fault fill_memory(const std::byte* to, std::uint64_t value, std::int64_t count,
-                      std::uint64_t next);
-    /// -1, 0 or 1 in `reached`.
-    Fault compare_memory(const std::byte* a, const std::byte* b, std::int64_t count,
-                         std::uint64_t next);
-
     std::uint64_t leave() {
         top -= 16;
         base = word(top, 1);
@@ -485,5 +463,28 @@ struct Frames {
     void unwind(std::uint64_t calls);
     bool keep(const Record& record);
 };
+
+// What a reference is to as the bytes that a controller has there, so many bits behind, and of
+// that shape. `slots` is the address of a text's or a value's slots; what is loaded is
+// `Frames::reached`.
+Fault load_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                   std::uint32_t shape, std::uint64_t next);
+Fault store_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                    std::uint32_t shape, std::uint64_t value, std::uint64_t next);
+Fault load_text_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                        std::uint32_t shape, std::uint64_t slots, std::uint64_t next);
+Fault store_text_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                         std::uint32_t shape, std::uint64_t slots, std::uint64_t next);
+Fault copy_from_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                        std::uint32_t shape, std::uint64_t slots, std::uint64_t next);
+Fault copy_to_through(Frames& frames, const std::byte* reference, std::uint64_t bit,
+                      std::uint32_t shape, std::uint64_t slots, std::uint64_t next);
+Fault copy_memory(Frames& frames, const std::byte* to, const std::byte* from, std::int64_t count,
+                  std::uint64_t next);
+Fault fill_memory(Frames& frames, const std::byte* to, std::uint64_t value, std::int64_t count,
+                  std::uint64_t next);
+/// -1, 0 or 1 in `Frames::reached`.
+Fault compare_memory(Frames& frames, const std::byte* a, const std::byte* b, std::int64_t count,
+                     std::uint64_t next);
 
 }  // namespace lineshaft::st::meaning

@@ -50,15 +50,15 @@
     OP(number_of_reference, integer, "wtrr", if (!frames.number(at(b), U(c), U(d))) FAIL(out_of_range); put(a, frames.reached)) \
     OP(reference_of_number, integer, "trrr", frames.find_number(at(a), U(b), U(c), U(d))) \
     OP(reach, move, "wtn-", LINESHAFT_ST_REACHED(frames.reach(at(b), c, BEHIND)); put(a, frames.reached)) \
-    OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(frames.load_through(at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
-    OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.store_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(load_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.load_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(store_text_through, text, "rtnr", LINESHAFT_ST_REACHED(frames.store_text_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_from_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_from_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_to_through, move, "rtnr", LINESHAFT_ST_REACHED(frames.copy_to_through(at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
-    OP(copy_memory, move, "ttr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.copy_memory(at(a), at(b), I(c), BEHIND))) \
-    OP(fill_memory, move, "trr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.fill_memory(at(a), U(b), I(c), BEHIND))) \
-    OP(compare_memory, integer, "wttr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(frames.compare_memory(at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
+    OP(load_through, move, "wtnr", LINESHAFT_ST_REACHED(load_through(frames, at(b), c + U(d), UPPER(to), BEHIND)); put(a, frames.reached)) \
+    OP(store_through, move, "rtnr", LINESHAFT_ST_REACHED(store_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(load_text_through, text, "rtnr", LINESHAFT_ST_REACHED(load_text_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(store_text_through, text, "rtnr", LINESHAFT_ST_REACHED(store_text_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_from_through, move, "rtnr", LINESHAFT_ST_REACHED(copy_from_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_to_through, move, "rtnr", LINESHAFT_ST_REACHED(copy_to_through(frames, at(b), c + U(d), UPPER(to), U(a), BEHIND))) \
+    OP(copy_memory, move, "ttr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(copy_memory(frames, at(a), at(b), I(c), BEHIND))) \
+    OP(fill_memory, move, "trr-", if ((fuel -= effort(I(c))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(fill_memory(frames, at(a), U(b), I(c), BEHIND))) \
+    OP(compare_memory, integer, "wttr", if ((fuel -= effort(I(d))) < 0) FAIL(no_end); LINESHAFT_ST_REACHED(compare_memory(frames, at(b), at(c), I(d), BEHIND)); put(a, frames.reached)) \
     OP(offset, move, "wrn-", put(a, U(b) + c))                                                       \
     OP(offset_by, move, "wrr-", put(a, U(b) + U(c)))                                                 \
     OP(load, move, "wrn-", put(a, word(target(U(b)), c)))                                            \

@@ -141,6 +141,27 @@ void give_value(Writing& w, const Location& to, const Type& type, const Expressi
         store(w, behind(to, w.code.kind_slot()), w.constant_slot(w.kinds.at(type.routine)));
 }
 
+/// Inputs of a function or a method that are given nothing begin as they are declared.
+void begin_left_out(Writing& w, const Location& frame, const Expression& e,
+                    const Routine& routine) {
+    if (routine.has_instances()) return;
+    for (const Variable& variable : routine.variables) {
+        const bool missing =
+            variable.section == Section::input &&
+            std::ranges::find(e.arguments, &variable, &Argument::variable) == e.arguments.end();
+        if (!missing || variable.space == Space::constant) continue;
+        const std::uint32_t slots = slots_of(w, *variable.type);
+        const bool is_near = !e.is_dispatched && frame.mode == Mode::slot;
+        const bool is_of_block = !e.is_dispatched && routine.owner;
+        if (e.is_dispatched) signature_image(w, routine);
+        const Slot made = is_near ? frame.slot + variable.slot : w.new_temporary(slots);
+        w.image_uses.push_back({w.next(), is_of_block ? routine.owner->type : nullptr, &routine});
+        w.put(Op::initialise, made,
+              e.is_dispatched ? slot_in_signature(w, routine, variable) : variable.slot, slots);
+        if (!is_near) copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
+    }
+}
+
 /// Inputs and references, and what is left out. Gives what is to be written back. `save`: before
 /// the call is given anything what runs already is kept; all that is given is known then.
 std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
@@ -186,22 +207,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
             if (value.is_lent) value.slot = w.emit(Op::lent, none, value.slot);
     }
     give(w, later);
-    if (routine.has_instances()) return lent;
-    for (const Variable& variable : routine.variables) {
-        const bool missing =
-            variable.section == Section::input &&
-            std::ranges::find(e.arguments, &variable, &Argument::variable) == e.arguments.end();
-        if (!missing || variable.space == Space::constant) continue;
-        const std::uint32_t slots = slots_of(w, *variable.type);
-        const bool is_near = !e.is_dispatched && frame.mode == Mode::slot;
-        const bool is_of_block = !e.is_dispatched && routine.owner;
-        if (e.is_dispatched) signature_image(w, routine);
-        const Slot made = is_near ? frame.slot + variable.slot : w.new_temporary(slots);
-        w.image_uses.push_back({w.next(), is_of_block ? routine.owner->type : nullptr, &routine});
-        w.put(Op::initialise, made,
-              e.is_dispatched ? slot_in_signature(w, routine, variable) : variable.slot, slots);
-        if (!is_near) copy(w, parameter(w, frame, e, variable), {Mode::slot, made}, slots);
-    }
+    begin_left_out(w, frame, e, routine);
     return lent;
 }
 
