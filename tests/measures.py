@@ -26,7 +26,7 @@ LONG_FUNCTIONS = {
     "runtime/program/program_form.cpp:program_form",
     "runtime/st/code/machine.cpp:run",  # the loop of the machine
 }
-CLOSED_ENUMERATIONS = set()
+CLOSED_ENUMERATIONS = {"Command", "GroupCommand", "TestCall", "PathFault", "PlanResult", "RegisterType"}
 COMPARISONS_OF_DIALECTS = 109
 COMMENTS_WITH_OF = 292
 

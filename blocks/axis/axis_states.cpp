@@ -80,9 +80,26 @@ bool can_be_buffered(Command command) {
         case C::cam_in:
         case C::combine_axes:
             return true;
-        default:
-            return false;
+        case C::none:
+        case C::power_on:
+        case C::power_off:
+        case C::reset:
+        case C::stop:
+        case C::move_superimposed:
+        case C::halt_superimposed:
+        case C::motion_in_position:
+        case C::set_position:
+        case C::set_override:
+        case C::write_parameter:
+        case C::write_bool_parameter:
+        case C::abort_trigger:
+        case C::gear_out:
+        case C::cam_out:
+        case C::phasing_absolute:
+        case C::phasing_relative:
+            break;
     }
+    return false;
 }
 
 bool can_be_followed(AxisState state) {

@@ -21,9 +21,10 @@ PathMoveError error_of(PlanResult result) {
             return PathMoveError::limit_not_positive;
         case PlanResult::velocity_above_limit:
             return PathMoveError::velocity_above_limit;
-        default:
-            return PathMoveError::not_finite;
+        case PlanResult::not_finite:
+            break;
     }
+    return PathMoveError::not_finite;
 }
 
 }  // namespace

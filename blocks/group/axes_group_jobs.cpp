@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "blocks/group/axes_group.hpp"
@@ -86,9 +87,24 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
         case GroupCommand::power:
             switch_power(context, job.request);
             return MotionError::none;
-        default:
+        case GroupCommand::set_override:
             return set_override(context, job);
+        case GroupCommand::none:
+        case GroupCommand::reset:
+        case GroupCommand::stop:
+        case GroupCommand::halt:
+        case GroupCommand::interrupt:
+        case GroupCommand::move_linear_absolute:
+        case GroupCommand::move_linear_relative:
+        case GroupCommand::move_circular_absolute:
+        case GroupCommand::move_circular_relative:
+        case GroupCommand::move_direct_absolute:
+        case GroupCommand::move_direct_relative:
+        case GroupCommand::move_path:
+            break;
     }
+    assert(false);  // another function has it
+    return MotionError::wrong_state;
 }
 
 MotionError AxesGroup::add_axis(const Context& context, const GroupRequest& request) {

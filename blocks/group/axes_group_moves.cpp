@@ -80,9 +80,12 @@ MotionError motion_error_of(PathFault fault) {
             return MotionError::no_arc;
         case PathFault::limit_not_positive:
             return MotionError::limit_not_positive;
-        default:
-            return MotionError::not_finite;
+        case PathFault::not_finite:
+        case PathFault::not_joined:
+        case PathFault::full:
+            break;
     }
+    return MotionError::not_finite;
 }
 
 /// Whatever the place where it will begin.

@@ -383,22 +383,6 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
     return write(start.phases.data(), start.track, from, to, taken, out);
 }
 
-PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least,
-                       const PlanOptions& options) {
-    double duration = least;
-    MotionPlan tried;
-    for (std::size_t i = 0, kept = 0; kept < axes.size(); i = (i + 1) % axes.size()) {
-        const AxisMove& axis = axes[i];
-        const PlanResult result = plan(*axis.limits, axis.from, axis.to, duration, tried, options);
-        if (result != PlanResult::ok) return result;
-        kept = tried.duration > duration ? 1 : kept + 1;
-        duration = tried.duration;
-    }
-    for (std::size_t i = 0; i < axes.size(); ++i)
-        plan(*axes[i].limits, axes[i].from, axes[i].to, duration, out[i], options);
-    return PlanResult::ok;
-}
-
 MotionState MotionPlan::at(double t) const {
     std::size_t phase = 0;
     return at(t, phase);

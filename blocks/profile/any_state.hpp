@@ -132,16 +132,4 @@ PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal&
 PlanResult plan(const MotionLimits& limits, const MotionState& from, const Goal& to,
                 double duration, MotionPlan& out, const PlanOptions& options = {});
 
-struct AxisMove {
-    const MotionLimits* limits = nullptr;
-    MotionState from;
-    Goal to;
-};
-
-/// Several axes together: each is planned for the least duration, no less than `least` [s], that
-/// is feasible for all. `out` has a plan for each axis; when one cannot be planned, none is
-/// written.
-PlanResult synchronise(std::span<const AxisMove> axes, std::span<MotionPlan> out, double least = 0,
-                       const PlanOptions& options = {});
-
 }  // namespace lineshaft

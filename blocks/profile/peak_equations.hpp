@@ -17,6 +17,13 @@ struct Quartic {
 /// A relative step after which Householder's iteration of the fourth order leaves only rounding.
 inline constexpr double householder_near = 3e-5;
 
+/// Its step, with the value f0, the first derivative f1, half the second f2 and a sixth of the
+/// third f3: what x is to be less.
+inline double householder_step(double f0, double f1, double f2, double f3) {
+    const double newton = f1 * f1 - f0 * f2;
+    return f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
+}
+
 /// The root in [low, high] where p rises through zero, by Householder's iteration of the fourth
 /// order from x, until a step is no greater than near |x|. A step out of the bracket halves it.
 /// NaN where a term is beyond a double.
@@ -29,8 +36,7 @@ inline double rising_root(const Quartic& p, double x, double near, double low, d
         const double f3 = 4 * p.c4 * x + p.c3;
         if (f0 == 0) return x;
         (f0 < 0 ? low : high) = x;
-        const double newton = f1 * f1 - f0 * f2;
-        const double step = f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
+        const double step = householder_step(f0, f1, f2, f3);
         if (std::isnan(step)) return step;
         const double next = x - step;
         const bool inside = next >= low && next <= high;

@@ -18,8 +18,7 @@ static inline double triangular_from_standstill(double J, double miss, double hi
         const double f0 = (c4 * (x * x) * x - miss) * x, f2 = 6 * c4 * (x * x), f3 = 4 * c4 * x;
         if (f0 == 0) return x;
         (f0 < 0 ? low : high) = x;
-        const double newton = f1 * f1 - f0 * f2;
-        const double step = f0 * newton / (f1 * (newton - f0 * f2) + f0 * f0 * f3);
+        const double step = householder_step(f0, f1, f2, f3);
         if (std::isnan(step)) return step;
         const double next = x - step, last = x;
         const bool inside = next >= low && next <= high;

@@ -21,9 +21,6 @@ class ModbusSession {
     /// A length that no frame has came: where the next one begins is unknown. Nothing more is read.
     bool is_lost() const { return is_lost_; }
 
-    /// Whether a frame has begun and not ended.
-    bool is_within_frame() const { return !kept_.empty(); }
-
   private:
     std::string answer(std::string_view frame);
 

@@ -68,9 +68,11 @@ auto with_type(RegisterType type, Call with) {
             return with(float{});
         case RegisterType::real64:
             return with(double{});
-        default:
-            return with(std::uint16_t{});
+        case RegisterType::bit:
+        case RegisterType::uint16:
+            break;
     }
+    return with(std::uint16_t{});
 }
 
 std::uint16_t ordered(const MappedSignal& signal, std::uint16_t word) {

@@ -124,6 +124,7 @@ std::optional<const Type*> take_unconverted(Checking& c, Expression*& e, Express
     return &target;
 }
 
+/// What the name says is written, as a conversion of its own.
 const Type* make_written(Checking& c, Expression*& e, Expression*& value, const Type& target,
                          bool truncates) {
     const Type& from = *value->type;

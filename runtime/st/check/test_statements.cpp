@@ -241,10 +241,17 @@ const Type* check_test_statement(Checking& c, Expression& call, bool as_statemen
         case TestCall::mock_verify_call_count:
             check_mocked(c, call);
             return nullptr;
-        default:
-            check_compared(c, call);
-            return nullptr;
+        case TestCall::none:
+        case TestCall::assert_eq:
+        case TestCall::assert_neq:
+        case TestCall::assert_gt:
+        case TestCall::assert_lt:
+        case TestCall::assert_ge:
+        case TestCall::assert_le:
+            break;
     }
+    check_compared(c, call);
+    return nullptr;
 }
 
 }  // namespace lineshaft::st

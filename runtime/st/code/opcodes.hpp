@@ -142,7 +142,6 @@
     OP(sub_real, real, "wrr-", put(a, narrow(R(b) - R(c))))                                          \
     OP(mul_real, real, "wrr-", put(a, narrow(product(R(b), R(c)))))                                  \
     OP(div_real, real, "wrr-", put(a, narrow(R(b) / R(c))))                                          \
-    OP(mod_lreal, real, "wrr-", put(a, std::fmod(R(b), R(c))))                                       \
     OP(neg_lreal, real, "wr--", put(a, -R(b)))                                                       \
     OP(abs_lreal, real, "wr--", put(a, std::fabs(R(b))))                                             \
     OP(abs_signed, integer, "wr--", put(a, I(b) < 0 ? 0 - U(b) : U(b)))                              \

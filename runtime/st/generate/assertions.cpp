@@ -184,7 +184,13 @@ void write_test_statement(Writing& w, const Expression& e) {
         }
         case TestCall::assert_near:
             return write_distance(w, e);
-        default:
+        case TestCall::none:
+        case TestCall::assert_eq:
+        case TestCall::assert_neq:
+        case TestCall::assert_gt:
+        case TestCall::assert_lt:
+        case TestCall::assert_ge:
+        case TestCall::assert_le:
             break;
     }
     const Expression& second = *e.arguments[1].value;

@@ -285,9 +285,14 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
             return binary(w, e, wanted);
         case E::converted:
             return converted(w, e, wanted);
-        default:
-            return w.constant_slot(0);
+        case E::typed:
+        case E::list:
+        case E::repeated:
+        case E::refer:
+        case E::self:
+            break;
     }
+    return w.constant_slot(0);
 }
 
 bool is_wide(const Writing& w, const Expression& e) {

@@ -111,7 +111,11 @@ std::string Failed::what() const {
         case TestCall::mock_verify_call_count:
             return fmt::format("expected {} call{}, found {}", word(stop_.b),
                                word(stop_.b) == 1 ? "" : "s", word(stop_.a));
-        default:
+        case TestCall::none:
+        case TestCall::assert_eq:
+        case TestCall::advance_time:
+        case TestCall::mock:
+        case TestCall::mock_function:
             break;
     }
     if (wanted() == found() && assertion_.found->is_date()) {

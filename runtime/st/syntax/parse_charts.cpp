@@ -66,7 +66,8 @@ bool at_association(const Parsing& p) {
     return behind == Word::close ? is_among(plain) : behind == Word::comma && is_among(timed);
 }
 
-/// CoDeSys 2.3 has what a step does itself as a Stmt_List in it: an action without a name.
+/// A part of Chart_Step: CoDeSys 2.3 has what a step does itself as a Stmt_List in it: an action
+/// without a name.
 void parse_step_action(Parsing& p, Pou& pou, ChartStep& step) {
     Pou& action = p.tree.pous.emplace_back();
     action.kind = PouKind::method;

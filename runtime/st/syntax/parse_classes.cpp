@@ -121,6 +121,7 @@ void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     if (p.panic) skip_past(p, Word::end_property_);
 }
 
+/// A part of Declaration: a METHOD that stands behind the block it is of.
 void parse_late_method(Parsing& p) {
     Pou* block = p.tree.units.empty() ? nullptr : p.tree.units.back();
     const bool has_methods = block && block->place.source == p.source.get() &&

@@ -16,7 +16,8 @@ Expression* parse_element(Parsing& p) {
     return repeated;
 }
 
-/// Behind the first value of an array; they end where `goes_on` says.
+/// A part of Var_Init and Param_Assign: what stands behind the first value of an array; they end
+/// where `goes_on` says.
 template <class GoesOn>
 Expression* parse_more(Parsing& p, Expression* first, GoesOn goes_on) {
     if (!goes_on()) return first;

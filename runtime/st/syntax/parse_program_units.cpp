@@ -92,7 +92,8 @@ void add_action(Parsing& p, Pou& to) {
     action->methods.clear();
 }
 
-/// It is of the block before it in its file; without one it sees what all see, as B&R has it.
+/// A part of Declaration, an Action_Decl: it is of the block before it in its file; without one it
+/// sees what all see, as B&R has it.
 void parse_action_beside(Parsing& p) {
     const bool has_unit = !p.tree.units.empty() && may_have_parts(*p.tree.units.back()) &&
                           p.tree.units.back()->place.source == p.source.get();
@@ -130,6 +131,7 @@ bool goes_on_qualified(const Parsing& p) {
            p.tree.globals.back().is_qualified_only;
 }
 
+/// A part of Declaration: a Var_Section of globals.
 void parse_globals(Parsing& p) {
     const bool is_qualified_only = has_attribute(p, p.at, "qualified_only") || goes_on_qualified(p);
     DeclarationBlock block = parse_section(p, Section::global);

@@ -68,7 +68,7 @@ void parse_access_statement(Parsing& p, Expression* target, Block& to) {
     end_statement(p);
 }
 
-/// A value alone names an action, `a;`, or is a mistake.
+/// A part of Invocation: a value alone names an action, `a;`, or is a mistake.
 void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     using Kind = Expression::Kind;
     const bool is_place =
@@ -114,7 +114,7 @@ void parse_simple(Parsing& p, Block& to) {
     end_statement(p);
 }
 
-/// A condition or selector, and the word behind it.
+/// A part of IF_Stmt, Case_Stmt and While_Stmt: a condition or selector, and the word behind it.
 Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
     Expression* condition = parse_assigned(p);
     if (p.panic || expect(p, end, where)) return condition;
@@ -123,8 +123,8 @@ Expression* parse_condition(Parsing& p, Word end, std::string_view where) {
     return condition;
 }
 
-/// The condition of an ELSIF. What it assigns is assigned where those above are not fulfilled, so
-/// it is the IF of an ELSE then, which it makes the one at hand.
+/// A part of IF_Stmt: the condition of an ELSIF. What it assigns is assigned where those above are
+/// not fulfilled, so it is the IF of an ELSE then, which it makes the one at hand.
 void parse_else_if(Parsing& p, Statement*& at_hand) {
     Block assigned;
     p.before = &assigned;
@@ -318,7 +318,7 @@ void parse_region(Parsing& p) {
     p.accept(Word::semicolon);
 }
 
-/// A loop without its condition, which was told, is left out.
+/// A part of Stmt: a loop without its condition, which was told, is left out.
 void parse_structured(Parsing& p, Statement::Kind kind, Block& to,
                       void (*read)(Parsing&, Statement&)) {
     Statement* statement = p.make(kind, p.here());

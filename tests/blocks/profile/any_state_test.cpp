@@ -292,45 +292,6 @@ TEST_CASE("a given duration is kept, or the next feasible one is", "[any_state]"
         std::fprintf(stderr, "%ld durations blocked, %zu phases at most\n", blocked, most);
 }
 
-TEST_CASE("axes that are synchronised arrive together, at the least common duration",
-          "[any_state]") {
-    Random random{24};
-    for (long i = 0; i < test::count_of("LINESHAFT_PROBLEMS", 1500) / 5; ++i) {
-        std::array<Problem, 3> problems;
-        std::array<MotionLimits, 3> limits;
-        std::array<AxisMove, 3> axes;
-        std::array<MotionPlan, 3> out;
-        const Problem first = any(random);
-        for (std::size_t k = 0; k < 3; ++k) {
-            problems[k] = any(random);
-            const double size = first.V / problems[k].V,
-                         pace = (first.A / first.J) / (problems[k].A / problems[k].J);
-            for (double* x : {&problems[k].p0, &problems[k].pf}) *x *= size * pace;
-            for (double* x : {&problems[k].v0, &problems[k].vf, &problems[k].V, &problems[k].Vmin})
-                *x *= size;
-            for (double* x : {&problems[k].a0, &problems[k].A, &problems[k].D}) *x *= size / pace;
-            problems[k].J *= size / (pace * pace);
-            const Problem& p = problems[k];
-            limits[k] = limits_of(p);
-            axes[k] = {&limits[k], {p.p0, p.v0, p.a0, 0}, {p.pf, p.vf}};
-        }
-        REQUIRE(synchronise(axes, out) == PlanResult::ok);
-        // Each axis in turn asks for its own next feasible duration, found by halving.
-        double least = 0;
-        for (std::size_t k = 0, kept = 0; kept < 3; k = (k + 1) % 3) {
-            const double next = duration(problems[k], least);
-            kept = next > least * (1 + 1e-10) ? 1 : kept + 1;
-            least = std::max(least, next);
-        }
-        INFO(line(problems[0]) << line(problems[1]) << line(problems[2]));
-        for (std::size_t k = 0; k < 3; ++k) {
-            REQUIRE(out[k].duration == out[0].duration);
-            REQUIRE(run(problems[k], out[k], families().front(), true).position < 1500);
-        }
-        REQUIRE(std::abs(out[0].duration - least) <= 1e-9 * least);
-    }
-}
-
 TEST_CASE("a plan says what it cannot do and is not written then", "[any_state]") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
@@ -368,21 +329,6 @@ TEST_CASE("a plan says what it cannot do and is not written then", "[any_state]"
     CHECK(plan(limits, {2, -1.0001, 0.5, 0}, {-3, -0.5}, out) == PlanResult::not_finite);
     CHECK(plan(limits, {2, -1.0001, 0.5, 0}, {-3, -0.5}, 9, out) == PlanResult::not_finite);
     CHECK(out.duration == duration);
-}
-
-TEST_CASE("axes are planned together or not at all", "[any_state]") {
-    MotionLimits limits;
-    REQUIRE(limits.set(2, -1, 4, 3, 10) == PlanResult::ok);
-    const AxisMove good{&limits, {}, {5, 0}}, bad{&limits, {}, {5, 3}};
-    std::array<MotionPlan, 2> out;
-    CHECK(synchronise(std::array{good, bad}, out) == PlanResult::velocity_above_limit);
-    CHECK(synchronise(std::array{good, good}, out, HUGE_VAL) == PlanResult::not_finite);
-    CHECK(out[0].count + out[1].count == 0);
-    REQUIRE(synchronise(std::array{good, good}, out) == PlanResult::ok);
-    CHECK(out[0].duration == Approx(3.4333333333));
-    REQUIRE(synchronise(std::array{good, good}, out, 7) == PlanResult::ok);
-    CHECK(out[0].duration == 7);
-    CHECK(out[1].duration == 7);
 }
 
 TEST_CASE("a goal beside the end of the direct ramp loses no digits", "[any_state]") {
