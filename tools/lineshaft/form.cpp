@@ -5,6 +5,7 @@
 
 #include "runtime/program/schema.hpp"
 #include "runtime/source/diagnostic.hpp"
+#include "runtime/st/functions/described.hpp"
 #include "runtime/st/functions/standard.hpp"
 #include "tools/lineshaft/command.hpp"
 #include "tools/lineshaft/forms.hpp"
@@ -144,16 +145,22 @@ nlohmann::ordered_json to_json(const Form& form) {
 
 constexpr std::string_view functions = "functions";
 constexpr std::string_view about_functions =
-    "What Structured Text can call of IEC 61131-3 and of Siemens' SCL; beside them INT_TO_REAL and "
-    "its like convert, and LIMIT_INT and its like are functions of one type";
+    "What Structured Text can call of IEC 61131-3, of Siemens' SCL and of CODESYS; beside them "
+    "INT_TO_REAL and its like convert, and LIMIT_INT and its like are functions of one type";
 
 void print_functions() {
+    const auto print_function = [](std::string_view name, const auto& f) {
+        fmt::print("  {:20} {}\n{:23}{}\n", name, wrapped(f.signature.substr(name.size()), 23), "",
+                   wrapped(f.doc, 23));
+    };
     fmt::print("{}: {}\n", functions, wrapped(about_functions, functions.size() + 2));
     for (const st::Subject* subject : st::function_subjects) {
         fmt::print("\n{}\n", subject->name);
-        for (const st::StandardFunction& f : subject->functions)
-            fmt::print("  {:20} {}\n{:23}{}\n", f.name, f.signature.substr(f.name.size()), "",
-                       wrapped(f.doc, 23));
+        for (const st::StandardFunction& f : subject->functions) print_function(f.name, f);
+    }
+    for (const st::DescribedSubject& subject : st::described_functions()) {
+        fmt::print("\n{}\n", subject.name);
+        for (const st::DescribedFunction& f : subject.functions) print_function(f.name(), f);
     }
     fmt::print("\ntypes\n");
     for (const st::GenericType& type : st::generic_types)
@@ -169,6 +176,7 @@ nlohmann::ordered_json to_json(const st::StandardFunction& f, std::string_view s
     if (f.most > f.least) out["most"] = f.most;
     if (f.result != st::Generic::nothing) out["result"] = st::name_of(f.result);
     out["pure"] = f.is_pure;
+    out["signature"] = f.signature;
     out["doc"] = f.doc;
     return out;
 }
@@ -179,6 +187,12 @@ void list_functions(bool json) {
     for (const st::Subject* subject : st::function_subjects)
         for (const st::StandardFunction& f : subject->functions)
             list.push_back(to_json(f, subject->name));
+    for (const st::DescribedSubject& subject : st::described_functions())
+        for (const st::DescribedFunction& f : subject.functions)
+            list.push_back({{"name", f.name()},
+                            {"subject", subject.name},
+                            {"signature", f.signature},
+                            {"doc", f.doc}});
     fmt::print("{}\n", list.dump(2));
 }
 

@@ -2,40 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
+
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::projects {
 
+using st::StandardFunction;
+
 namespace {
 
-constexpr std::string_view comparisons[] = {"gt", "ge", "eq", "le", "lt", "ne"};
-/// Results that are as the arguments behind the first `skipped` ones.
-struct LikeArguments {
-    std::string_view name;
-    std::size_t skipped = 0;
-    bool is_first = false;  ///< only one of them
-};
-constexpr LikeArguments like_arguments[] = {
-    {"add"},          {"sub"},          {"mul"},          {"div"},          {"mod"},
-    {"and"},          {"or"},           {"xor"},          {"not"},          {"abs"},
-    {"max"},          {"min"},          {"limit"},        {"move"},         {"sel", 1},
-    {"mux", 1},       {"sqrt"},         {"ln"},           {"log"},          {"exp"},
-    {"sin"},          {"cos"},          {"tan"},          {"asin"},         {"acos"},
-    {"atan"},         {"shl", 0, true}, {"shr", 0, true}, {"rol", 0, true}, {"ror", 0, true},
-    {"expt", 0, true}};
-/// Of truth values, unless something is known to be otherwise.
-constexpr std::string_view of_bits[] = {"and", "or", "xor", "not"};
 struct Fixed {
     std::string_view name, type;
 };
-constexpr Fixed fixed[] = {
-    {"len", "INT"},        {"find", "INT"},           {"concat", "STRING"},
-    {"left", "STRING"},    {"right", "STRING"},       {"mid", "STRING"},
-    {"insert", "STRING"},  {"delete", "STRING"},      {"replace", "STRING"},
-    {"trunc", "DINT"},     {"add_time", "TIME"},      {"sub_time", "TIME"},
-    {"multime", "TIME"},   {"divtime", "TIME"},       {"mul_time", "TIME"},
-    {"div_time", "TIME"},  {"sub_date_date", "TIME"}, {"sub_tod_tod", "TIME"},
-    {"sub_dt_dt", "TIME"}, {"add_tod_time", "TOD"},   {"sub_tod_time", "TOD"},
-    {"add_dt_time", "DT"}, {"sub_dt_time", "DT"}};
 /// Outputs that the standard's blocks have.
 constexpr Fixed outputs[] = {{"q", "BOOL"},  {"qu", "BOOL"}, {"qd", "BOOL"},
                              {"q1", "BOOL"}, {"et", "TIME"}, {"cv", "INT"}};
@@ -56,10 +35,10 @@ bool has(const List& list, std::string_view name) {
 }
 
 /// Of arguments that are meant to be of one type. A number without one takes that of the others.
-std::string common_type(const std::vector<std::string>& types, std::size_t skipped) {
+std::string common_type(std::span<const std::string> types) {
     std::string common;
-    for (std::size_t i = skipped; i < types.size(); ++i) {
-        const std::string type = lower(types[i]);
+    for (const std::string& one : types) {
+        const std::string type = lower(one);
         if (type.empty()) return {};
         if (type == "#") continue;
         const auto* rank = std::ranges::find(numbers, type);
@@ -78,11 +57,42 @@ bool same(const std::vector<std::string>& types) {
                                [&](const auto& type) { return lower(type) == lower(types[0]); });
 }
 
-/// Not by those that make a real number of an integer.
-bool is_kept_by(std::string_view function, std::string_view type) {
-    constexpr std::string_view real[] = {"sqrt", "ln",  "log",  "exp",  "sin",
-                                         "cos",  "tan", "asin", "acos", "atan"};
-    return !has(real, function) || type.ends_with("real");
+/// The arguments of a call that its result is of the type of: of the `count` behind the first
+/// `skipped` ones.
+struct LikeArguments {
+    std::size_t skipped = 0, count = 0;
+};
+LikeArguments like_arguments(const StandardFunction& f, std::size_t given) {
+    switch (f.typing) {
+        case st::Typing::real:
+        case st::Typing::reals:
+        case st::Typing::own:
+        case st::Typing::common:
+        case st::Typing::bits:
+            return {0, given};
+        case st::Typing::chosen:
+            return {1, given - 1};
+        case st::Typing::places:
+            return {0, 1};
+        case st::Typing::operation:
+            return {0, f.word == st::Word::power ? 1 : given};
+        default:
+            return {};
+    }
+}
+
+bool is_of_dates(const StandardFunction& f) {
+    return f.word == st::Word::plus || f.word == st::Word::minus;
+}
+
+/// NOT is an operator that is drawn as a function, and no row.
+bool is_not(std::string_view function) {
+    return same_name(function, "not");
+}
+
+/// Of truth values, unless something is known to be otherwise.
+bool is_of_bits(const StandardFunction& f) {
+    return f.word == st::Word::and_ || f.word == st::Word::or_ || f.word == st::Word::xor_;
 }
 
 bool is_name(std::string_view text) {
@@ -185,11 +195,31 @@ std::string NetworkTypes::of_declared(std::string_view pou, std::string_view var
     return found == declared->second.end() ? std::string() : found->second;
 }
 
+/// The result of a function by what its row says.
+static std::string of_row(const StandardFunction& f, const std::vector<std::string>& arguments) {
+    const st::GenericType& result = st::generic_types[static_cast<std::size_t>(f.result)];
+    if (result.doc.empty()) return std::string(result.name);
+    if (f.typing == st::Typing::real && f.result == st::Generic::any_int) return "DINT";
+    if (arguments.empty()) return {};
+    const LikeArguments like = like_arguments(f, arguments.size());
+    if (like.count == 0) return {};
+    if (is_of_dates(f) && has(dates, lower(arguments.front())))
+        return same(arguments) ? "TIME" : upper(arguments.front());
+    const std::string type = common_type(std::span(arguments).subspan(like.skipped, like.count));
+    if (type.empty() && is_of_bits(f)) return "BOOL";
+    const bool is_kept =
+        f.result != st::Generic::any_real || f.word == st::Word::power || type.ends_with("REAL");
+    return is_kept ? type : std::string();
+}
+
 bool NetworkTypes::is_of_one_type(std::string_view function) const {
-    const std::string name = lower(function);
-    const auto* like = std::ranges::find(like_arguments, name, &LikeArguments::name);
-    return like != std::end(like_arguments) && like->skipped == 0 && !like->is_first &&
-           !declared_.functions.contains(name);
+    if (declared_.functions.contains(lower(function))) return false;
+    const StandardFunction* f = st::find_standard_function(function);
+    if (!f) return is_not(function);
+    const bool are_alike =
+        std::ranges::all_of(std::span(f->parameters).first(static_cast<std::size_t>(f->least)),
+                            [&](const st::Parameter& p) { return p.type == f->result; });
+    return f->least > 0 && are_alike && like_arguments(*f, 2).count == 2;
 }
 
 std::string NetworkTypes::of_call(std::string_view function,
@@ -197,20 +227,11 @@ std::string NetworkTypes::of_call(std::string_view function,
     const std::string name = lower(function);
     if (const auto own = declared_.functions.find(name); own != declared_.functions.end())
         return own->second;
-    if (has(comparisons, name)) return "BOOL";
-    if (const auto* type = std::ranges::find(fixed, name, &Fixed::name); type != std::end(fixed))
-        return std::string(type->type);
-    const auto* like = std::ranges::find(like_arguments, name, &LikeArguments::name);
-    if (like != std::end(like_arguments)) {
-        if (arguments.empty()) return {};
-        const bool is_date = has(dates, lower(arguments.front()));
-        if (is_date && (name == "add" || name == "sub"))
-            return same(arguments) ? "TIME" : upper(arguments.front());
-        std::string type = like->is_first ? common_type({arguments.front()}, 0)
-                                          : common_type(arguments, like->skipped);
-        if (type.empty() && has(of_bits, name)) return "BOOL";
-        return is_kept_by(name, lower(type)) ? type : std::string();
+    if (is_not(name)) {
+        const std::string type = arguments.empty() ? "" : common_type(arguments);
+        return type.empty() && !arguments.empty() ? "BOOL" : type;
     }
+    if (const StandardFunction* f = st::find_standard_function(name)) return of_row(*f, arguments);
     const std::size_t to = name.rfind("to_");
     const bool converts = to == 0 || (to != name.npos && name[to - 1] == '_');
     const std::string target = converts ? name.substr(to + 3) : std::string();

@@ -2,6 +2,7 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
@@ -11,7 +12,10 @@ namespace {
 class BitBlock {
   public:
     BitBlock(Checking& c, const Expression& call)
-        : c_(c), call_(call), scatters_(same_name(call.operands[0]->token.text, "SCATTER_BLK")) {}
+        : c_(c),
+          call_(call),
+          scatters_(find_standard_function(call.operands[0]->token.text)->rewriting ==
+                    Rewriting::scatter_block) {}
 
     /// False: it is none, which was told.
     bool read() {

@@ -53,9 +53,8 @@ Expression* elements_from(Checking& c, const Expression& element) {
                        index);
 }
 
-Expression* stays_within(Checking& c, const Expression& like, std::string_view function,
-                         Expression* in, Expression* count, Expression* out) {
-    const bool fills = function.find("FILL") != function.npos;
+Expression* stays_within(Checking& c, const Expression& like, bool fills, Expression* in,
+                         Expression* count, Expression* out) {
     if (!in || !count || !out || has_call(*count) || !check(c, count)) return nullptr;
     if (!count->type->is_integer() && !count->type->is_bits()) return nullptr;
     become_lint(c, count);
@@ -138,8 +137,8 @@ void rewrite_block_move(Checking& c, Statement*& s) {
     const Expression& call = *s->value;
     Expression *value = call.arguments[0].value, *count = call.arguments[1].value,
                *to = call.arguments[2].value;
-    const bool fills = call.standard->name.find("FILL") != std::string_view::npos;
-    Expression* fits = stays_within(c, call, call.standard->name, value, count, to);
+    const bool fills = call.standard->rewriting == Rewriting::fill_block;
+    Expression* fits = stays_within(c, call, fills, value, count, to);
     if (!check(c, to) || !check(c, value, to->type) || !check(c, count)) return;
     const bool fills_members = fills && is_alike(*to);
     if (!(is_element(*to) || fills_members) ||

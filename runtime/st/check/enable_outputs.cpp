@@ -4,28 +4,40 @@
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 
 namespace {
 
+/// What the row of that name says; a conversion has none.
+Eno eno_of(std::string_view name) {
+    if (const StandardFunction* standard = find_standard_function(name)) return standard->eno;
+    return upper(name).find("_TO_") != name.npos ? Eno::converted : Eno::always;
+}
+
 /// A call, and what its ENO is made of.
 class EnableOutput {
   public:
     EnableOutput(Checking& c, const Expression& call, const std::vector<Argument>& given)
-        : c_(c), call_(call), given_(given), name_(upper(call.operands[0]->token.text)) {}
+        : c_(c),
+          call_(call),
+          given_(given),
+          function_(find_standard_function(call.operands[0]->token.text)),
+          eno_(eno_of(call.operands[0]->token.text)) {}
 
     /// Null: nothing that the function does can fail.
     Expression* condition(const Type* expected) {
-        if (name_ == "LIMIT") return is(at("MN", 0), Word::less_or_equal, at("MX", 2));
-        if (name_ == "MUX" || name_ == "DEMUX") return is_chosen();
+        if (eno_ == Eno::limit) return is(at("MN", 0), Word::less_or_equal, at("MX", 2));
+        if (eno_ == Eno::chosen) return is_chosen();
         Expression* value = result();
         const Type* type = check(c_, value, expected);
         if (!type) return nullptr;
-        if (name_ == "NORM_X" || name_ == "SCALE_X") return scaled(*type);
-        if (is_arithmetic()) return calculated(*type);
+        if (eno_ == Eno::scaled) return scaled(*type);
+        if (eno_ == Eno::arithmetic) return calculated(*type);
         if (type->is_real()) return is_valid(result());
-        return type->is_integer() && given_.size() == 1 ? converted(*type) : nullptr;
+        const bool is_converted = eno_ == Eno::converted && given_.size() == 1;
+        return type->is_integer() && is_converted ? converted(*type) : nullptr;
     }
 
   private:
@@ -57,10 +69,6 @@ class EnableOutput {
     Expression* both(Expression* a, Expression* b) const { return is(a, Word::and_, b); }
     Expression* is_valid(Expression* value) const { return of("IS_VALID", value); }
 
-    bool is_arithmetic() const {
-        return name_ == "ADD" || name_ == "SUB" || name_ == "MUL" || name_ == "DIV";
-    }
-
     /// K names one of the inputs, or outputs, and not the one beside them.
     Expression* is_chosen() const {
         const auto is_other = [&](const Argument& a) {
@@ -90,17 +98,14 @@ class EnableOutput {
         if (type.is_real()) {
             whole = is_valid(result());
         } else if (type.is_integer()) {
-            const Word sign = name_ == "ADD"   ? Word::plus
-                              : name_ == "SUB" ? Word::minus
-                              : name_ == "MUL" ? Word::times
-                                               : Word::divided;
             Expression* exact = real(at("IN1", 0));
             for (std::size_t i = 1; i < given_.size(); ++i)
-                exact = is(exact, sign, real(given_.size() == 2 ? at("IN2", 1) : given_[i].value));
+                exact = is(exact, function_->word,
+                           real(given_.size() == 2 ? at("IN2", 1) : given_[i].value));
             Expression* away = of("ABS", is(exact, Word::minus, real(result())));
             whole = is(away, Word::less, number(std::ldexp(1.0, type.bits - 1)));
         }
-        if (name_ != "DIV" || !whole) return whole;
+        if (function_->word != Word::divided || !whole) return whole;
         return is(is(at("IN2", 1), Word::equal, make_constant(c_, call_, any_integer_type, {})),
                   Word::or_, whole);
     }
@@ -120,11 +125,13 @@ class EnableOutput {
                     is(value, Word::less, number(to)));
     }
 
+    bool rounds_by(Op op) const { return function_ && function_->op == op; }
+
     /// A whole number of another, or of a real one.
     Expression* converted(const Type& type) const {
         Expression* given = given_[0].value;
         const Type* from = given->type;
-        if (!from || name_ == "ABS" || from->is_any()) return nullptr;
+        if (!from || from->is_any()) return nullptr;
         const double low = least(type), high = greatest(type);
         const bool is_long = type.bits == 64;
         if (from->is_integer()) {
@@ -133,29 +140,21 @@ class EnableOutput {
         }
         if (!from->is_real()) return nullptr;
         if (is_long) return is_within(real(given), low, high);
-        if (name_ == "FLOOR") return is_within(real(given), low, high + 1.0);
+        if (rounds_by(Op::floor)) return is_within(real(given), low, high + 1.0);
         Expression* above = is(number(low - 1.0), Word::less, real(given));
-        if (name_ == "CEIL") return both(above, is(real(given), Word::less_or_equal, number(high)));
-        if (name_ == "TRUNC") return both(above, is(real(given), Word::less, number(high + 1.0)));
+        if (rounds_by(Op::ceil))
+            return both(above, is(real(given), Word::less_or_equal, number(high)));
+        if (rounds_by(Op::truncate))
+            return both(above, is(real(given), Word::less, number(high + 1.0)));
         return is_within(real(given), low - 0.5, high + 0.5);
     }
 
     Checking& c_;
     const Expression& call_;
     const std::vector<Argument>& given_;
-    std::string name_;
+    const StandardFunction* function_;  ///< null of a conversion
+    Eno eno_;
 };
-
-bool can_fail(std::string_view name) {
-    static constexpr std::string_view all[] = {
-        "LIMIT",    "MUX",       "DEMUX",    "NORM_X",    "SCALE_X",     "ADD",       "SUB",
-        "MUL",      "DIV",       "EXPT",     "SQR",       "SQRT",        "LN",        "EXP",
-        "SIN",      "COS",       "TAN",      "ASIN",      "ACOS",        "ATAN",      "FRAC",
-        "ROUND",    "CEIL",      "FLOOR",    "TRUNC",     "ABS",         "MIN",       "MAX",
-        "MOVE_BLK", "UMOVE_BLK", "FILL_BLK", "UFILL_BLK", "SCATTER_BLK", "GATHER_BLK"};
-    const auto has_name = [&](std::string_view one) { return same_name(one, name); };
-    return std::ranges::any_of(all, has_name) || upper(name).find("_TO_") != name.npos;
-}
 
 }  // namespace
 
@@ -163,11 +162,12 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
                           Block& before) {
     const Expression& call = *s.value;
     const Expression& callee = *call.operands[0];
-    const bool is_one = s.place.dialect().vendor == Vendor::siemens && callee.kind == E::name &&
-                        can_fail(callee.token.text);
-    if (!is_one) return nullptr;
+    const bool is_one = s.place.dialect().vendor == Vendor::siemens && callee.kind == E::name;
+    const Eno eno = is_one ? eno_of(callee.token.text) : Eno::always;
+    if (eno == Eno::always) return nullptr;
+    const bool moves = eno == Eno::elements || eno == Eno::bits;
     for (Argument& each : given) {
-        if (each.is_output || callee.token.text.ends_with("_BLK")) continue;
+        if (each.is_output || moves) continue;
         const bool is_call = has_call(*each.value);
         const Type* type = check(c, each.value);
         if (!is_call || !type || type->is_any()) continue;
@@ -176,13 +176,12 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
         before.push_back(make_assignment(c, s.place, make_use(c, call, kept), each.value));
         each.value = make_use(c, call, kept);
     }
-    const std::string name = upper(callee.token.text);
-    if (name == "SCATTER_BLK" || name == "GATHER_BLK")
-        return has_bit_block(c, *make_with(c, call, given));
-    if (name.ends_with("_BLK")) {
+    if (eno == Eno::bits) return has_bit_block(c, *make_with(c, call, given));
+    if (eno == Eno::elements) {
         const Expression& moved = *make_with(c, call, given);
-        return stays_within(c, call, name, argument_of(moved, "IN"), argument_of(moved, "COUNT"),
-                            argument_of(moved, "OUT"));
+        const auto becomes = find_standard_function(callee.token.text)->rewriting;
+        return stays_within(c, call, becomes == Rewriting::fill_block, argument_of(moved, "IN"),
+                            argument_of(moved, "COUNT"), argument_of(moved, "OUT"));
     }
     Expression* target = s.kind == S::assign ? s.target : nullptr;
     const Type* expected = target ? check(c, target) : nullptr;

@@ -68,8 +68,9 @@ Expression* bit_of(Checking& c, Expression* word, std::size_t number) {
 }
 
 /// SCATTER and GATHER: an assignment for each bit.
-void rewrite_bits(Checking& c, Statement*& s, bool scatters) {
-    const std::string_view name = scatters ? "SCATTER" : "GATHER";
+void rewrite_bits(Checking& c, Statement*& s) {
+    const std::string_view name = s->value->standard->name;
+    const bool scatters = s->value->standard->rewriting == Rewriting::scatter;
     Expression*& word = s->value->arguments[scatters ? 0 : 1].value;
     Expression*& flags = s->value->arguments[scatters ? 1 : 0].value;
     const Type *bits = check(c, word), *type = check(c, flags);
@@ -106,18 +107,10 @@ void check_timer(Checking& c, Expression*& timer, std::string_view function) {
            "timers are instances of TON, TOF, TP and TONR");
 }
 
-void check_special(Checking& c, Statement*& s) {
-    const StandardFunction& f = *s->value->standard;
-    if (f.name == "DEMUX") return rewrite_demux(c, s);
-    if (!check_count(c, *s->value, f) || !order_arguments(c, s->value, f)) return;
+void preset_timer(Checking& c, Statement*& s) {
     Expression& call = *s->value;
-    call.type = &bool_type;  // which nothing takes
-    if (f.least == 1) return check_timer(c, call.arguments[0].value, f.name);
-    if (f.name == "SCATTER" || f.name == "GATHER") return rewrite_bits(c, s, f.name == "SCATTER");
-    if (f.name == "SCATTER_BLK" || f.name == "GATHER_BLK") return rewrite_bit_block(c, s);
-    if (f.name.ends_with("_BLK")) return rewrite_block_move(c, s);
     Expression*& timer = call.arguments[1].value;
-    check_timer(c, timer, f.name);
+    check_timer(c, timer, call.standard->name);
     if (!timer->type) return;
     Block assignments{
         make_assignment(c, s->place, make_member(c, timer, "pt"), call.arguments[0].value)};
@@ -129,6 +122,32 @@ void check_special(Checking& c, Statement*& s) {
         check(c, assignments.back()->value);
     }
     s = make_sequence(c, s->place, std::move(assignments));
+}
+
+void check_special(Checking& c, Statement*& s) {
+    const StandardFunction& f = *s->value->standard;
+    if (f.rewriting == Rewriting::demux) return rewrite_demux(c, s);
+    if (!check_count(c, *s->value, f) || !order_arguments(c, s->value, f)) return;
+    Expression& call = *s->value;
+    call.type = &bool_type;  // which nothing takes
+    switch (f.rewriting) {
+        case Rewriting::reset_timer:
+            return check_timer(c, call.arguments[0].value, f.name);
+        case Rewriting::preset_timer:
+            return preset_timer(c, s);
+        case Rewriting::scatter:
+        case Rewriting::gather:
+            return rewrite_bits(c, s);
+        case Rewriting::scatter_block:
+        case Rewriting::gather_block:
+            return rewrite_bit_block(c, s);
+        case Rewriting::move_block:
+        case Rewriting::fill_block:
+            return rewrite_block_move(c, s);
+        case Rewriting::stays:
+        case Rewriting::demux:
+            break;
+    }
 }
 
 /// The routine of that name, or that of an instance.

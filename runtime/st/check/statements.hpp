@@ -60,9 +60,9 @@ std::optional<Bounds> bounds_of_array(Checking& c, Expression* array);
 Expression* elements_from(Checking& c, const Expression& element);
 
 /// Whether MOVE_BLK and its like stay within the arrays that they are given, which are not checked
-/// yet; null: that is not known.
-Expression* stays_within(Checking& c, const Expression& like, std::string_view function,
-                         Expression* in, Expression* count, Expression* out);
+/// yet; null: that is not known. `fills`: FILL_BLK, whose `in` is one value.
+Expression* stays_within(Checking& c, const Expression& like, bool fills, Expression* in,
+                         Expression* count, Expression* out);
 
 /// What is given by that name; null: nothing.
 Expression* argument_of(const Expression& call, std::string_view name);

@@ -13,13 +13,13 @@ constexpr StandardFunction arrays[] = {
     {"CountOfElements(IN: ARRAY): DINT", "how many elements the array has, in all its dimensions",
      Typing::element_count, nullptr},
     {"MOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "copies COUNT elements from IN on, of an array, to those from OUT on, or none where there are fewer",
-     Typing::statement, nullptr},
-    {"UMOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as MOVE_BLK", Typing::statement, nullptr},
+     Rewriting::move_block, Eno::elements},
+    {"UMOVE_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as MOVE_BLK", Rewriting::move_block, Eno::elements},
     {"FILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "writes IN to COUNT elements of an array, or members of a structure, from OUT on, or to none where there are fewer",
-     Typing::statement, nullptr},
-    {"UFILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as FILL_BLK", Typing::statement, nullptr},
+     Rewriting::fill_block, Eno::elements},
+    {"UFILL_BLK(IN: ANY; COUNT: ANY_INT; OUT: ANY)", "the same as FILL_BLK", Rewriting::fill_block, Eno::elements},
     {"DEMUX(K: ANY_INT; IN: ANY; OUT0, ...: ANY)", "writes IN to the output of number K, from 0 on, or to OUTELSE if there is none",
-     Typing::statement, nullptr},
+     Rewriting::demux, Eno::chosen},
 };
 // clang-format on
 

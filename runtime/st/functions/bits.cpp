@@ -97,15 +97,15 @@ constexpr StandardFunction bit_strings[] = {
     {"BIT_CLR(IN: ANY_WHOLE; POS: ANY_INT): ANY_WHOLE", "IN with bit POS cleared, from 0 on", Typing::places, emit_clear_bit},
     {"BIT_TST(IN: ANY_WHOLE; POS: ANY_INT): BOOL", "bit POS of IN, from 0 on", Typing::places, emit_test_bit},
     {"SCATTER(IN: ANY_BIT; OUT: ARRAY)", "writes each bit of IN to an element of OUT, an array of BOOL",
-     Typing::statement, nullptr},
+     Rewriting::scatter},
     {"SCATTER_BLK(IN: ANY_BIT; COUNT_IN: ANY_INT; OUT: BOOL)",
      "writes the bits of COUNT_IN elements from IN on to elements of an array of BOOL from OUT on, which begin where such a bit string may",
-     Typing::statement, nullptr},
+     Rewriting::scatter_block, Eno::bits},
     {"GATHER_BLK(IN: BOOL; COUNT_OUT: ANY_INT; OUT: ANY_BIT)",
      "writes elements of an array of BOOL from IN on, which begin where such a bit string may, to the bits of COUNT_OUT elements from OUT on",
-     Typing::statement, nullptr},
+     Rewriting::gather_block, Eno::bits},
     {"GATHER(IN: ARRAY; OUT: ANY_BIT)", "writes each element of IN, an array of BOOL, to a bit of OUT",
-     Typing::statement, nullptr},
+     Rewriting::gather},
 };
 // clang-format on
 

@@ -24,9 +24,9 @@ Slot emit_scale(Emission& e) {
 /// What comes from outside, and what it is to be.
 constexpr StandardFunction measured[] = {
     {"NORM_X(MIN, VALUE, MAX: ANY_REAL): ANY_REAL", "where VALUE is from MIN to MAX: (VALUE - MIN) / (MAX - MIN)",
-     Typing::reals, emit_normalise},
+     Typing::reals, emit_normalise, Op::move, Eno::scaled},
     {"SCALE_X(MIN, VALUE, MAX: ANY_NUM): ANY_NUM", "VALUE * (MAX - MIN) + MIN, rounded where that is an integer",
-     Typing::scaled, emit_scale},
+     Typing::scaled, emit_scale, Op::move, Eno::scaled},
     {"IS_VALID(IN: ANY_REAL): BOOL", "IN is a number, and not infinite", Typing::real,
      [](Emission& e) { return e.result(Op::is_finite, e.value(0)); }},
     {"IS_VALID_BCD(IN: ANY_BIT): BOOL", "each four bits of IN are a decimal digit", Typing::bits,

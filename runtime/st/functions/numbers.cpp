@@ -95,48 +95,49 @@ Slot emit_multiplex(Emission& e) {
     return e.result(Op::load_at, first, place);
 }
 
-consteval StandardFunction real(std::string_view signature, std::string_view doc, Op op) {
-    return {signature, doc, Typing::real, emit_real, op};
+consteval StandardFunction real(std::string_view signature, std::string_view doc, Op op,
+                                Eno eno = Eno::always) {
+    return {signature, doc, Typing::real, emit_real, op, eno};
 }
 
 consteval StandardFunction whole(std::string_view signature, std::string_view doc, Op op) {
-    return {signature, doc, Typing::real, emit_whole, op};
+    return {signature, doc, Typing::real, emit_whole, op, Eno::converted};
 }
 
 // clang-format off
 constexpr StandardFunction numbers[] = {
-    {"ABS(IN: ANY_MAGNITUDE): ANY_MAGNITUDE", "the number without its sign", Typing::own, emit_absolute},
-    real("SQRT(IN: ANY_REAL): ANY_REAL", "the square root; of what is below 0 not a number", Op::sqrt),
-    real("LN(IN: ANY_REAL): ANY_REAL", "the logarithm to the base e", Op::ln),
+    {"ABS(IN: ANY_MAGNITUDE): ANY_MAGNITUDE", "the number without its sign", Typing::own, emit_absolute, Op::move, Eno::valid},
+    real("SQRT(IN: ANY_REAL): ANY_REAL", "the square root; of what is below 0 not a number", Op::sqrt, Eno::valid),
+    real("LN(IN: ANY_REAL): ANY_REAL", "the logarithm to the base e", Op::ln, Eno::valid),
     real("LOG(IN: ANY_REAL): ANY_REAL", "the logarithm to the base 10", Op::log10),
-    real("EXP(IN: ANY_REAL): ANY_REAL", "e to the power IN", Op::exp),
-    real("SIN(IN: ANY_REAL): ANY_REAL", "the sine of an angle [rad]", Op::sin),
-    real("COS(IN: ANY_REAL): ANY_REAL", "the cosine of an angle [rad]", Op::cos),
-    real("TAN(IN: ANY_REAL): ANY_REAL", "the tangent of an angle [rad]", Op::tan),
-    real("ASIN(IN: ANY_REAL): ANY_REAL", "the angle whose sine is IN, -pi/2 to pi/2 [rad]", Op::asin),
-    real("ACOS(IN: ANY_REAL): ANY_REAL", "the angle whose cosine is IN, 0 to pi [rad]", Op::acos),
-    real("ATAN(IN: ANY_REAL): ANY_REAL", "the angle whose tangent is IN, -pi/2 to pi/2 [rad]", Op::atan),
+    real("EXP(IN: ANY_REAL): ANY_REAL", "e to the power IN", Op::exp, Eno::valid),
+    real("SIN(IN: ANY_REAL): ANY_REAL", "the sine of an angle [rad]", Op::sin, Eno::valid),
+    real("COS(IN: ANY_REAL): ANY_REAL", "the cosine of an angle [rad]", Op::cos, Eno::valid),
+    real("TAN(IN: ANY_REAL): ANY_REAL", "the tangent of an angle [rad]", Op::tan, Eno::valid),
+    real("ASIN(IN: ANY_REAL): ANY_REAL", "the angle whose sine is IN, -pi/2 to pi/2 [rad]", Op::asin, Eno::valid),
+    real("ACOS(IN: ANY_REAL): ANY_REAL", "the angle whose cosine is IN, 0 to pi [rad]", Op::acos, Eno::valid),
+    real("ATAN(IN: ANY_REAL): ANY_REAL", "the angle whose tangent is IN, -pi/2 to pi/2 [rad]", Op::atan, Eno::valid),
     {"ATAN2(Y, X: ANY_REAL): ANY_REAL", "the angle of the point (X, Y), -pi to pi [rad]",
      Typing::reals, emit_real, Op::atan2},
     real("ATANH(IN: ANY_REAL): ANY_REAL", "the number whose hyperbolic tangent is IN, -1 to 1", Op::atanh),
-    {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square},
-    {"FRAC(IN: ANY_REAL): ANY_REAL", "what is behind the point: IN - TRUNC(IN)", Typing::real, emit_fraction},
-    {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power},
+    {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square, Op::move, Eno::valid},
+    {"FRAC(IN: ANY_REAL): ANY_REAL", "what is behind the point: IN - TRUNC(IN)", Typing::real, emit_fraction, Op::move, Eno::valid},
+    {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power, Eno::valid},
     whole("TRUNC(IN: ANY_REAL): ANY_INT", "the whole number towards 0", Op::truncate),
     whole("ROUND(IN: ANY_REAL): ANY_INT", "the nearest whole number; of two the even one", Op::round),
     whole("FLOOR(IN: ANY_REAL): ANY_INT", "the greatest whole number that is not above IN", Op::floor),
     whole("CEIL(IN: ANY_REAL): ANY_INT", "the least whole number that is not below IN", Op::ceil),
     {"MIN(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the least of its arguments",
-     Typing::common, emit_extremum, Op::min_signed},
+     Typing::common, emit_extremum, Op::min_signed, Eno::valid},
     {"MAX(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the greatest of its arguments",
-     Typing::common, emit_extremum, Op::max_signed},
+     Typing::common, emit_extremum, Op::max_signed, Eno::valid},
     {"LIMIT(MN, IN, MX: ANY_ELEMENTARY): ANY_ELEMENTARY", "IN, but at least MN and at most MX; where MN is above MX in SCL IN, in MatIEC MX if IN is above MN, else MN",
-     Typing::common, emit_limit},
+     Typing::common, emit_limit, Op::move, Eno::limit},
     {"SEL(G: BOOL; IN0, IN1: ANY): ANY", "IN1 if G, else IN0", Typing::chosen, emit_select},
     {"MUX(K: ANY_INT; IN0, ...: ANY): ANY",
      "the argument of number K, from 0 on; of another number that of INELSE, else a fault, in CODESYS "
      "the last, in MatIEC what the type begins with",
-     Typing::chosen, emit_multiplex},
+     Typing::chosen, emit_multiplex, Op::move, Eno::chosen},
 };
 // clang-format on
 

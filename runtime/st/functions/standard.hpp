@@ -35,6 +35,36 @@ enum class Typing : std::uint8_t {
     statement,  ///< no value: a statement of its own, check/rewrites.cpp
 };
 
+/// When ENO of a call in SCL is FALSE, as TIA Portal's help says; it is found before the call is
+/// executed (check/enable_outputs.cpp).
+enum class Eno : std::uint8_t {
+    always,      ///< never: it is EN
+    arithmetic,  ///< the result is outside the type, or no valid number; division by 0 leaves it
+                 ///< TRUE
+    valid,       ///< a result that is real is no valid number
+    converted,   ///< the value is outside the integer that is asked for, or no valid REAL
+    limit,       ///< MN is above MX
+    scaled,      ///< MIN is not below MAX, the result is outside the type, or no valid number
+    chosen,      ///< K is none of the inputs, or outputs, also where there is INELSE or OUTELSE
+    elements,    ///< there are fewer elements than that: nothing is moved
+    bits,        ///< there are fewer elements than that, of which as many are done as there are, or
+                 ///< the BOOLs do not begin where a bit string may: nothing is done
+};
+
+/// What check/rewrites.cpp puts for a statement that calls the function.
+enum class Rewriting : std::uint8_t {
+    stays,
+    demux,
+    scatter,
+    gather,
+    scatter_block,
+    gather_block,
+    move_block,
+    fill_block,
+    reset_timer,
+    preset_timer,
+};
+
 /// What an argument may be and what a result is: as signatures write it, and what it stands for.
 // clang-format off
 #define LINESHAFT_ST_GENERIC_TYPES(TYPE)                                                           \
@@ -88,11 +118,18 @@ struct StandardFunction {
     /// A signature is `LIMIT(MN, IN, MX: ANY_NUM): ANY_NUM`, with `...` for as many more of
     /// the last parameter as a call gives.
     consteval StandardFunction(std::string_view written, std::string_view about, Typing types,
-                               Emit emitted, Op instruction = Op::move);
+                               Emit emitted, Op instruction = Op::move, Eno told = Eno::always);
     /// An operator that is written as a function.
-    consteval StandardFunction(std::string_view written, std::string_view about, Word meant)
-        : StandardFunction(written, about, Typing::operation, nullptr) {
+    consteval StandardFunction(std::string_view written, std::string_view about, Word meant,
+                               Eno told = Eno::always)
+        : StandardFunction(written, about, Typing::operation, nullptr, Op::move, told) {
         word = meant;
+    }
+    /// A statement of its own.
+    consteval StandardFunction(std::string_view written, std::string_view about, Rewriting becomes,
+                               Eno told = Eno::always, Emit emitted = nullptr)
+        : StandardFunction(written, about, Typing::statement, emitted, Op::move, told) {
+        rewriting = becomes;
     }
 
     /// Those behind the last in the row are as that.
@@ -109,7 +146,9 @@ struct StandardFunction {
     Emit emit;                      ///< null where the checker puts something else for the call
     Op op;                          ///< for `emit`: of shifts that of 8 bits
     Word word = Word::end_of_file;  ///< of `operation`
-    bool is_pure;                   ///< the same of the same arguments, and nothing is written
+    Rewriting rewriting = Rewriting::stays;  ///< of `statement`
+    Eno eno;
+    bool is_pure;  ///< the same of the same arguments, and nothing is written
 };
 
 inline constexpr int most_arguments = 64;
@@ -148,12 +187,13 @@ constexpr Generic find_generic(std::string_view name) {
 }
 
 consteval StandardFunction::StandardFunction(std::string_view written, std::string_view about,
-                                             Typing types, Emit emitted, Op instruction)
+                                             Typing types, Emit emitted, Op instruction, Eno told)
     : signature(written),
       doc(about),
       typing(types),
       emit(emitted),
       op(instruction),
+      eno(told),
       is_pure(types != Typing::scan_time && types != Typing::statement && types != Typing::memory) {
     std::string_view rest = written;
     name = take_until(rest, "(");

@@ -11,8 +11,8 @@ Slot emit_reset(Emission& e) {
 
 // clang-format off
 constexpr StandardFunction timers[] = {
-    {"RESET_TIMER(TIMER: TIMER)", "lets the timer begin anew; its PT stays", Typing::statement, emit_reset},
-    {"PRESET_TIMER(PT: TIME; TIMER: TIMER)", "gives the timer another PT", Typing::statement, nullptr},
+    {"RESET_TIMER(TIMER: TIMER)", "lets the timer begin anew; its PT stays", Rewriting::reset_timer, Eno::always, emit_reset},
+    {"PRESET_TIMER(PT: TIME; TIMER: TIMER)", "gives the timer another PT", Rewriting::preset_timer},
 };
 // clang-format on
 

@@ -1,9 +1,13 @@
 #include "runtime/st/functions/standard.hpp"
 
+#include <set>
+
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "runtime/st/functions/described.hpp"
+#include "runtime/st/prelude/standard_source.hpp"
 #include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;
@@ -103,5 +107,33 @@ TEST_CASE("Structured Text: each standard function has a name of its own and say
     for (const StandardFunction* f : st::standard_functions()) {
         CHECK(st::find_standard_function(f->name) == f);
         CHECK(f->doc.size() >= 2);
+    }
+}
+
+TEST_CASE("Structured Text: the reference describes each function of the prelude, and no other") {
+    std::set<std::string_view> described;
+    for (const st::DescribedSubject& subject : st::described_functions())
+        for (const st::DescribedFunction& f : subject.functions) {
+            INFO(f.signature);
+            CHECK(described.insert(f.name()).second);
+            CHECK(st::find_standard_function(f.name()) == nullptr);
+            CHECK(f.signature.find("(") != f.signature.npos);
+            CHECK(f.doc.size() >= 2);
+        }
+    const std::string_view text = st::standard_source()->text;
+    constexpr std::string_view word = "\nFUNCTION ";
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at)) {
+        at += word.size();
+        const std::string_view name = text.substr(at, text.find_first_of(" \n", at) - at);
+        INFO(name);
+        if (st::is_in_standard_source(name)) CHECK(described.contains(name));
+    }
+    for (const std::string_view of_checker :
+         {"ADR", "REF", "SIZEOF", "XSIZEOF", "__ISVALIDREF", "__NEW", "__DELETE", "__POUNAME",
+          "__POSITION", "TypeOf", "TypeOfElements", "IS_ARRAY"})
+        CHECK(described.erase(of_checker) == 1);
+    for (const std::string_view name : described) {
+        INFO(name);
+        CHECK(st::is_in_standard_source(name));
     }
 }
