@@ -27,7 +27,7 @@ LONG_FUNCTIONS = {
     "runtime/st/code/machine.cpp:run",  # the loop of the machine
 }
 CLOSED_ENUMERATIONS = {"Command", "GroupCommand", "TestCall", "PathFault", "PlanResult", "RegisterType"}
-COMPARISONS_OF_DIALECTS = 109
+COMPARISONS_OF_DIALECTS = 67
 COMMENTS_WITH_OF = 292
 
 source = pathlib.Path(sys.argv[1])

@@ -126,7 +126,7 @@ Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlock
 
 bool take_as_variant(Checking& c, Expression*& e, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
-    const bool is_siemens = e->place.dialect().vendor == Vendor::siemens;
+    const bool is_siemens = e->place.dialect().has_s7_instructions;
     if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude() || !is_siemens)
         return false;
     if (!has_all(called, e->arguments)) return false;
@@ -161,7 +161,7 @@ void write_serializations(Checking& c) {
 
 bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
-    const bool is_siemens = call.place.dialect().vendor == Vendor::siemens;
+    const bool is_siemens = call.place.dialect().has_s7_instructions;
     if (!blocks || call.place.source->is_prelude()) return true;
     if (is_siemens && !has_all(called, call.arguments)) return true;
     for (const std::string_view name : {blocks->read, blocks->written}) {

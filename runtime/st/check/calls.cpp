@@ -370,7 +370,7 @@ std::string_view standard_name(const Type& type, std::string_view name) {
 static void name_instance_of_block(Checking& c, Expression*& e) {
     const Expression& callee = *e->operands[0];
     if (callee.kind != E::member || callee.operands[0]->kind != E::name ||
-        e->place.dialect().vendor != Vendor::siemens)
+        !e->place.dialect().has_s7_instructions)
         return;
     const Token& block = callee.operands[0]->token;
     const Routine* routine = find_variable(c, block) ? nullptr : c.find_routine(block);

@@ -45,8 +45,8 @@ struct ChartWriter {
     }
     Expression* active(const Token& step) { return make_member(c, name(step, step.text), "X"); }
     Expression* next(const Token& step) { return make_member(c, name(step, step.text), "_X"); }
-    bool is_codesys() const { return pou.place.dialect().vendor == Vendor::codesys; }
-    bool is_matiec() const { return pou.place.dialect().vendor == Vendor::matiec; }
+    bool is_codesys() const { return pou.place.dialect().charts == ChartRules::codesys; }
+    bool is_matiec() const { return pou.place.dialect().charts == ChartRules::matiec; }
     Expression* kept(const Token& at, std::string_view of, std::string_view part) {
         return name(at, part_name(of, part));
     }

@@ -23,7 +23,8 @@ constexpr Qualifier qualifiers[] = {{"N", false},  {"S", false},  {"R", false}, 
                                     {"SD", true},  {"DS", true},  {"SL", true}};
 
 bool is_known(const Routine& routine, const ChartAssociation& a) {
-    if (is_step_action(a) && routine.pou->place.dialect().vendor == Vendor::codesys) return true;
+    if (is_step_action(a) && routine.pou->place.dialect().charts == ChartRules::codesys)
+        return true;
     return find_called(qualifiers, qualifier_of(a), &Qualifier::name) != nullptr;
 }
 
@@ -472,7 +473,7 @@ Block chart_statements(Checking& c, Routine& routine) {
             w.is_matiec() ? write_action_of_matiec(w, action, uses) : write_action(w, action, uses);
     for (const ChartStep& step : chart.steps)
         w.out.push_back(w.set(w.kept(step.name, step.name.text, "before"), w.active(step.name)));
-    if (routine.pou->place.dialect().vendor == Vendor::codesys)
+    if (w.is_codesys())
         return with_flags(w, chart, {joined(change, times), w.out, std::move(conditions)});
     return with_flags(w, chart, {joined(joined(std::move(times), conditions), change), w.out, {}});
 }

@@ -86,7 +86,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
         return is_unchecked;
     }
     const bool is_told = changes_sign && mixes_signs && from.bits >= 32 &&
-                         dialect.vendor == Vendor::codesys;  // of its operands
+                         dialect.reckons_in_registers;  // of its operands
     if (!is_told) warn_of_loss(c, e, to);
     return true;
 }

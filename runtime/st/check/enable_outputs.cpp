@@ -162,7 +162,7 @@ Expression* enable_output(Checking& c, const Statement& s, std::vector<Argument>
                           Block& before) {
     const Expression& call = *s.value;
     const Expression& callee = *call.operands[0];
-    const bool is_one = s.place.dialect().vendor == Vendor::siemens && callee.kind == E::name;
+    const bool is_one = s.place.dialect().has_s7_instructions && callee.kind == E::name;
     const Eno eno = is_one ? eno_of(callee.token.text) : Eno::always;
     if (eno == Eno::always) return nullptr;
     const bool moves = eno == Eno::elements || eno == Eno::bits;

@@ -88,8 +88,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
     }
     if (same_name(prefix, "dtl")) return check_dtl(c, slot);
     const Dialect& dialect = e.place.dialect();
-    if (dialect.vendor == Vendor::siemens && lower(prefix).starts_with("s5"))
-        return check_s5time(c, e);
+    if (dialect.has_s7_instructions && lower(prefix).starts_with("s5")) return check_s5time(c, e);
     const bool is_long = same_name(prefix.substr(0, 1), "l"),
                has_no_sign = dialect.is_loose && is_long;
     const auto value = read_duration(e.token.text, has_no_sign);
@@ -186,7 +185,7 @@ const Type* check_typed(Checking& c, Expression*& e) {
         if (!type) return nullptr;
         c.note(name.place, *named);
     }
-    if (!type && same_name(name.text, "c") && name.place.dialect().vendor == Vendor::siemens)
+    if (!type && same_name(name.text, "c") && name.place.dialect().has_s7_instructions)
         return check_count(c, e);
     if (!type && resolve_name(c, name))
         return c.fail(code::not_declared, name.place,

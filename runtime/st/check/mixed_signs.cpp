@@ -58,8 +58,8 @@ const Type* met_type(const Type& given_a, const Type& given_b, const Place& plac
     const int bits = std::max(a.bits, b.bits);
     const bool mixes_signs = a.kind == Kind::integer && b.kind == Kind::integer &&
                              a.is_signed != b.is_signed && bits >= 32;
-    return mixes_signs && place.dialect().vendor == Vendor::codesys ? &integer_type(bits, true)
-                                                                    : common_type(a, b);
+    return mixes_signs && place.dialect().reckons_in_registers ? &integer_type(bits, true)
+                                                               : common_type(a, b);
 }
 
 }  // namespace lineshaft::st

@@ -104,7 +104,7 @@ bool is_given_to_a_pin(Checking& c, const Token& name) {
 bool hides_object(const Token& quoted, const Variable& found) {
     const bool is_global = found.space == Space::global || found.space == Space::constant;
     const bool is_handle = found.type && found.type->kind == Kind::handle;
-    const bool is_scl = quoted.place.source && quoted.place.dialect().vendor == Vendor::siemens;
+    const bool is_scl = quoted.place.source && quoted.place.dialect().has_s7_instructions;
     return quoted.quoted && is_scl && !is_global && !is_handle;
 }
 

@@ -4,17 +4,13 @@
 
 namespace lineshaft::st {
 
-static bool is_of_codesys(const Place& place) {
-    return place.dialect().vendor == Vendor::codesys;
-}
-
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected) {
     for (Expression*& operand : e.operands) {
         if (!operand) continue;
         const Type& type = operand->type->plain();
         if (type.kind != from) continue;
         const bool wider = expected && expected->kind == Kind::integer &&
-                           expected->bits > type.bits && !is_of_codesys(e.place);
+                           expected->bits > type.bits && !e.place.dialect().reckons_in_registers;
         convert(c, operand,
                 from == Kind::integer ? bits_type(type.bits)
                 : wider               ? expected->plain()
@@ -75,10 +71,10 @@ const Type* wider_for(const Expression& constant, const Type& typed, const Type*
             if (holds(bits_type(bits))) return &bits_type(bits);
         return nullptr;
     }
-    const bool is_codesys = is_of_codesys(constant.place),
+    const bool in_registers = constant.place.dialect().reckons_in_registers,
                is_due = expected && expected->is_integer();
-    const bool takes_sign = is_codesys && typed.plain().bits >= 32;
-    const Type* const due = is_due ? &expected->plain() : is_codesys ? &int_type : &dint_type;
+    const bool takes_sign = in_registers && typed.plain().bits >= 32;
+    const Type* const due = is_due ? &expected->plain() : in_registers ? &int_type : &dint_type;
     for (const Type* wider : {due, &dint_type, &lint_type})
         if (holds(*wider) && (widens(typed, *wider) || (takes_sign && typed.bits == wider->bits)))
             return wider;

@@ -281,7 +281,7 @@ Nothing refuse_operands(Checking& c, const Expression& e, std::string help) {
 static void take_sign(Checking& c, Expression*& operand) {
     const Type& type = operand->type->plain();
     const bool is_unsigned = type.kind == Kind::integer && !type.is_signed && type.bits >= 32;
-    if (is_unsigned && operand->place.dialect().vendor == Vendor::codesys)
+    if (is_unsigned && operand->place.dialect().reckons_in_registers)
         convert(c, operand, integer_type(type.bits, true));
 }
 

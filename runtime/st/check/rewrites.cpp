@@ -115,7 +115,7 @@ void preset_timer(Checking& c, Statement*& s) {
     Block assignments{
         make_assignment(c, s->place, make_member(c, timer, "pt"), call.arguments[0].value)};
     check_assignment(c, assignments.back());
-    if (s->place.dialect().vendor == Vendor::siemens) {  // it counts for a time that runs, too
+    if (s->place.dialect().has_s7_instructions) {  // it counts for a time that runs, too
         assignments.push_back(make_assignment(c, s->place, make_member(c, timer, "preset"),
                                               make_member(c, timer, "pt")));
         check(c, assignments.back()->target);
@@ -199,7 +199,7 @@ bool rewrite(Checking& c, Statement*& s) {
         return true;
     }
     if (!is_switched("en") && !standard_eno) {
-        const bool is_siemens = s->place.dialect().vendor == Vendor::siemens;
+        const bool is_siemens = s->place.dialect().has_s7_instructions;
         return is_siemens && routine && rewrite_bytes(c, s, *routine);
     }
     s = if_enabled(c, *s, routine != nullptr);

@@ -13,7 +13,7 @@ namespace lineshaft::st {
 namespace {
 
 bool is_siemens(const Place& place) {
-    return place.source && place.dialect().vendor == Vendor::siemens;
+    return place.source && place.dialect().has_s7_instructions;
 }
 
 /// `Siemens.Step7.s5TimerState(e)`. False: nothing makes it run, and this was told.

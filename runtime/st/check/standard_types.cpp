@@ -281,12 +281,12 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
 
 /// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.
 void choose_of_others(Checking& c, Expression& call, const Type* type) {
-    const Vendor vendor = call.place.dialect().vendor;
-    if (!type || same_name(call.arguments.back().name.text, "inelse")) return;
-    if (vendor == Vendor::matiec && (type->is_scalar() || type->kind == Kind::text))
+    const OtherChoice other = call.place.dialect().other_choice;
+    const bool has_else = same_name(call.arguments.back().name.text, "inelse");
+    if (!type || has_else || other == OtherChoice::fault) return;
+    if (other == OtherChoice::initial && (type->is_scalar() || type->kind == Kind::text))
         call.arguments.push_back({{}, false, make_constant(c, call, *type, {}), nullptr});
-    if (vendor == Vendor::codesys || vendor == Vendor::matiec)
-        call.arguments.back().name.text = "inelse";
+    call.arguments.back().name.text = "inelse";
 }
 
 const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {

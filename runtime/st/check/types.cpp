@@ -367,7 +367,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
                                            : begun_in_dialect(type, name.place);
     if (name.place.dialect().is_loose && !name.quoted)
         if (const Type* type = find_codesys_type(name.text)) return type;
-    const bool has_s5 = name.place.dialect().vendor == Vendor::siemens || is_library(name);
+    const bool has_s5 = name.place.dialect().has_s7_instructions || is_library(name);
     if (has_s5 && !name.quoted && !c.look_up(&Names::types, name) && !c.find_routine(name))
         if (const Type* type = find_s5_type(name.text)) return type;
     if (NamedType* named = c.look_up(&Names::types, name)) {

@@ -91,7 +91,7 @@ bool is_called(const Expression& e, std::string_view name) {
 }
 
 bool asks_type(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::siemens && e.arguments.size() == 1 &&
+    return e.place.dialect().has_s7_instructions && e.arguments.size() == 1 &&
            (is_called(e, "TypeOf") || is_called(e, "TypeOfElements"));
 }
 
@@ -134,7 +134,7 @@ void become_variant(Checking& c, Expression*& value, const Type& type) {
 }
 
 std::optional<const Type*> check_variant_call(Checking& c, Expression*& e) {
-    if (e->place.dialect().vendor != Vendor::siemens || e->arguments.size() != 1) return {};
+    if (!e->place.dialect().has_s7_instructions || e->arguments.size() != 1) return {};
     const bool of_elements = is_called(*e, "TypeOfElements");
     const bool is_array = is_called(*e, "IS_ARRAY"), counts = is_called(*e, "CountOfElements");
     if (!asks_type(*e) && !is_array && !counts) return {};

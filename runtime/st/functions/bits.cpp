@@ -10,7 +10,7 @@ Slot places(Emission& e) {
     const Slot n = e.value(1);
     const Op op = e.call.standard->op;
     const bool is_shift = op == Op::shl_8 || op == Op::shr_8;
-    if (!is_shift || e.call.place.dialect().vendor != Vendor::codesys) return n;
+    if (!is_shift || !e.call.place.dialect().reckons_in_registers) return n;
     return e.emit(Op::and_bits, n, e.constant(e.type().bits == 64 ? 63 : 31));
 }
 

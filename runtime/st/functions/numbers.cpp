@@ -23,9 +23,9 @@ Slot emit_whole(Emission& e) {
     const Slot whole = e.emit(e.call.standard->op, e.value(0));
     const Place& place = e.call.place;
     const Dialect& dialect = place.dialect();
-    if (!dialect.reals_leave_lowest_bits || place.source->is_prelude())
+    if (dialect.beyond_type == BeyondType::fault || place.source->is_prelude())
         return e.result(of_type(Op::round_sint, e.type()), whole);
-    if (dialect.vendor == Vendor::siemens)
+    if (dialect.beyond_type == BeyondType::lowest_bits)
         return e.result(of_type(Op::wrap_sint, e.type()), e.emit(Op::lowest_bits, whole));
     if (e.call.standard->op == Op::truncate)
         return e.result(of_type(Op::wrap_sint, e.type()), e.emit(Op::truncated_in_32, whole));
@@ -48,7 +48,7 @@ Op least(Emission& e) {
 
 /// Of two of which one is no number the first is kept, in CODESYS the second.
 bool keeps_second(const Emission& e) {
-    return e.call.place.dialect().vendor == Vendor::codesys;
+    return e.call.place.dialect().extremes_keep_second;
 }
 
 Slot emit_extremum(Emission& e) {
@@ -64,17 +64,17 @@ Slot emit_extremum(Emission& e) {
 
 Slot emit_limit(Emission& e) {
     const Slot mn = e.value(0), in = e.value(1), mx = e.value(2);
-    const Vendor vendor = e.call.place.dialect().vendor;
+    const CrossedLimits crossed = e.call.place.dialect().crossed_limits;
     const Op if_less =
         e.of_number(Op::move_if_lt_float, Op::move_if_lt_unsigned, Op::move_if_lt_signed);
-    if (vendor == Vendor::matiec) {
+    if (crossed == CrossedLimits::upper_or_lower) {
         const Slot limited = e.emit(Op::move, mn);
         e.put(if_less, mn, in, limited, e.emit(least(e), in, mx));
         e.land();
         return limited;
     }
     if (keeps_second(e)) return e.result(least(e), mx, e.emit(greatest(e), in, mn));
-    if (vendor != Vendor::siemens) return e.result(least(e), e.emit(greatest(e), in, mn), mx);
+    if (crossed == CrossedLimits::upper) return e.result(least(e), e.emit(greatest(e), in, mn), mx);
     const Slot limited = e.emit(least(e), e.emit(greatest(e), in, mn), mx);
     e.put(if_less, mx, mn, limited, in);
     e.land();

@@ -392,7 +392,7 @@ const BlockType* timer_at(const Writing& w, const Expression& instance) {
 }
 
 void update_timer(Writing& w, const Expression& read) {
-    const bool is_of_siemens = read.place.dialect().vendor == Vendor::siemens;
+    const bool is_of_siemens = read.place.dialect().has_s7_instructions;
     if (!is_of_siemens || !(same_name(read.token.text, "q") || same_name(read.token.text, "et")))
         return;
     const Expression& instance = *read.operands[0];

@@ -26,7 +26,7 @@ Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbe
 
 /// In SCL and CODESYS what is beyond the type leaves bits there: in SCL its lowest.
 Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
-    if (dialect.vendor == Vendor::siemens) return Op::lowest_bits;
+    if (dialect.beyond_type == BeyondType::lowest_bits) return Op::lowest_bits;
     if (to.bits == 64) return Op::left_in_64;
     return truncates ? Op::truncated_in_32 : Op::left_in_32;
 }
@@ -34,7 +34,7 @@ Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
 Slot nearest(Writing& w, Slot slot, const Type& to, bool truncates, Slot wanted) {
     const auto* source = w.place.source;
     const bool are_left =
-        source && source->dialect.reals_leave_lowest_bits && !source->is_prelude();
+        source && source->dialect.beyond_type != BeyondType::fault && !source->is_prelude();
     if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
     const Op left = bits_left(source->dialect, to, truncates);
     if (to.bits == 64) return w.emit(left, wanted, slot);

@@ -92,8 +92,8 @@ void finish(Writing& w, Routine& routine) {
 
 /// Siemens: the operating system tells an organization block of its first call.
 void tell_initial_call(Writing& w, const Routine& routine) {
-    const bool is_told = routine.pou->kind == PouKind::program &&
-                         routine.pou->place.dialect().vendor == Vendor::siemens;
+    const bool is_told =
+        routine.pou->kind == PouKind::program && routine.pou->place.dialect().has_s7_instructions;
     if (!is_told) return;
     for (const Variable& input : routine.variables) {
         const bool is_flag = input.section == Section::input && input.type->kind == Kind::boolean;

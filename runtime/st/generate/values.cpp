@@ -38,10 +38,6 @@ Op wide_op(Word op) {
                                : Op::div_dint;
 }
 
-bool is_of_codesys(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::codesys;
-}
-
 bool is_standard(const Expression& e, std::string_view name) {
     return e.kind == E::call && e.standard && same_name(e.standard->name, name);
 }
@@ -53,7 +49,7 @@ bool is_logic(const Expression& e) {
 /// What CODESYS has in a register of 32 bits, too: ABS, what SHL moves beyond the type, and what is
 /// joined with something wide.
 bool is_wide_in_codesys(const Writing& w, const Expression& e) {
-    if (!is_of_codesys(e)) return false;
+    if (!e.place.dialect().reckons_in_registers) return false;
     if (is_logic(e)) return is_wide(w, *e.operands[0]) || is_wide(w, *e.operands[1]);
     return is_standard(e, "abs") || is_standard(e, "shl");
 }
@@ -183,10 +179,9 @@ Slot reckon(Writing& w, const Expression& e, Slot a, Slot b, Slot wanted) {
 
 /// A quotient or a rest by 0 is 0, and not a fault.
 bool is_zero_by_zero(const Expression& e) {
-    const Dialect& dialect = e.place.dialect();
-    const bool is_zero_of_mod = dialect.vendor == Vendor::matiec || is_of_codesys(e);
+    const ByZero by_zero = e.place.dialect().by_zero;
     return may_be_divided_by_zero(e) &&
-           (dialect.zero_divides_to_zero || (is_zero_of_mod && e.op == Word::mod_));
+           (by_zero == ByZero::is_zero || (by_zero == ByZero::leaves_zero && e.op == Word::mod_));
 }
 
 /// 0 where the divisor is; else what `reckon` gives, which may put it into the slot that it gets.

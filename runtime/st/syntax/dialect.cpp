@@ -16,7 +16,8 @@ const Dialect iec = {.sign_precedes_power = true,
                      .programs_are_named = true,
                      .selects_by_texts = true,
                      .loops_begin_narrowed = true,
-                     .references_take_addresses = true};
+                     .references_take_addresses = true,
+                     .ampersands_may_be_two = true};
 
 const Dialect simatic_ax = [] {
     Dialect made = iec;
@@ -34,6 +35,8 @@ const Dialect automation_studio = [] {
     made.most_aligned = 4;
     made.text_length = 80;
     made.vendor = Vendor::automation_studio;
+    made.ampersands_may_be_two = false;
+    made.open_texts_end_with_lines = true;
     return made;
 }();
 
@@ -49,6 +52,13 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
                          .vendor = Vendor::codesys,
+                         .charts = ChartRules::codesys,
+                         .other_choice = OtherChoice::last,
+                         .extremes_keep_second = true,
+                         .reckons_in_registers = true,
+                         .goto_is_a_name = true,
+                         .points_may_end_reals = true,
+                         .has_sections_of_exports = true,
                          .texts_have_any_length = true,
                          .addresses_count = AddressCount::sizes,
                          .text_of_real = TextOfReal::of_codesys,
@@ -58,9 +68,10 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .reckons_in = 32,
                          .real_literals_are_lreal = true,
                          .loops_look_again = true,
-                         .reals_leave_lowest_bits = true,
+                         .beyond_type = BeyondType::left_in_register,
                          .rounds_away = true,
                          .enumerations_begin_at_zero = true,
+                         .by_zero = ByZero::leaves_zero,
                          .times_count_ms = true,
                          .dates_count_seconds = true,
                          .texts_are_windows_1252 = true};
@@ -74,7 +85,7 @@ const Dialect word_addressed = [] {
 const Dialect twincat = [] {
     Dialect made = codesys;
     made.addresses_count = AddressCount::bytes;
-    made.reals_leave_lowest_bits = false;
+    made.beyond_type = BeyondType::fault;
     made.text_of_real = TextOfReal::rounded;
     return made;
 }();
@@ -85,7 +96,14 @@ const Dialect matiec = [] {
     made.addresses_of_sizes_are_apart = true;
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
-    made.real_literals_are_lreal = made.reals_leave_lowest_bits = false;
+    made.real_literals_are_lreal = false;
+    made.beyond_type = BeyondType::fault;
+    made.charts = ChartRules::matiec;
+    made.other_choice = OtherChoice::initial;
+    made.crossed_limits = CrossedLimits::upper_or_lower;
+    made.extremes_keep_second = made.reckons_in_registers = made.goto_is_a_name = false;
+    made.points_may_end_reals = made.has_sections_of_exports = false;
+    made.durations_may_stand_apart = true;
     made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;
@@ -101,12 +119,14 @@ const Dialect scl = {.sign_precedes_power = false,
                      .texts_of_integers_have_signs = true,
                      .packs_as_s7 = true,
                      .vendor = Vendor::siemens,
+                     .has_s7_instructions = true,
+                     .crossed_limits = CrossedLimits::input,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
                      .text_of_real = TextOfReal::with_exponent,
                      .long_numbers_count_time = true,
-                     .reals_leave_lowest_bits = true,
-                     .zero_divides_to_zero = true,
+                     .beyond_type = BeyondType::lowest_bits,
+                     .by_zero = ByZero::is_zero,
                      .times_count_ms = true,
                      .texts_are_windows_1252 = true,
                      .characters_may_be_missing = true};

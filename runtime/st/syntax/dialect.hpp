@@ -15,6 +15,23 @@ enum class Vendor : std::uint8_t { none, automation_studio, codesys, matiec, sie
 /// and of what is not finite otherwise, as CODESYS has it; '+1.200000E+1', as Siemens has it.
 enum class TextOfReal : std::uint8_t { shortest, rounded, of_codesys, with_exponent };
 
+/// What REAL_TO_USINT(300.0) is, beyond the type: a fault, 44, or what is left in a register, as
+/// CODESYS has it (code/meaning.hpp, left_in_32).
+enum class BeyondType : std::uint8_t { fault, lowest_bits, left_in_register };
+
+/// x / 0 and x MOD 0 of whole numbers: faults; the latter 0; both 0.
+enum class ByZero : std::uint8_t { fault, leaves_zero, is_zero };
+
+/// MUX of a number that none of its inputs has and without INELSE: a fault, the last input, or what
+/// its type begins with.
+enum class OtherChoice : std::uint8_t { fault, last, initial };
+
+/// LIMIT where MN is above MX: MX; MX if IN is above MN, else MN; IN.
+enum class CrossedLimits : std::uint8_t { upper, upper_or_lower, input };
+
+/// Whose rules a sequential function chart goes by: flags, last scans, order of actions.
+enum class ChartRules : std::uint8_t { standard, codesys, matiec };
+
 /// What one language of the name Structured Text means where another means something else. A source
 /// has one dialect for good, see Source. All else is read alike in all of them.
 struct Dialect {
@@ -41,6 +58,18 @@ struct Dialect {
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
     bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
     Vendor vendor = Vendor::none;            ///< whose instances begin as find_beginning says
+    bool has_s7_instructions = false;  ///< VARIANT, S5 timers, ENO of functions, bytes of variables
+    ChartRules charts = ChartRules::standard;
+    OtherChoice other_choice = OtherChoice::fault;
+    CrossedLimits crossed_limits = CrossedLimits::upper;
+    bool extremes_keep_second = false;     ///< MIN and MAX of two of which one is no number
+    bool reckons_in_registers = false;     ///< UDINT and INT make a DINT, SHL by 33 places is by 1
+    bool goto_is_a_name = false;           ///< JMP is the word
+    bool points_may_end_reals = false;     ///< `10.`
+    bool has_sections_of_exports = false;  ///< lines between declarations, as `.EXP` has them
+    bool durations_may_stand_apart = false;  ///< `T# 1s`
+    bool open_texts_end_with_lines = false;  ///< one that lacks its quote
+    bool ampersands_may_be_two = false;      ///< `a && b`
     bool peripheries_are_image = false;      ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
     bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
@@ -55,10 +84,10 @@ struct Dialect {
     bool bool_is_number = false;  ///< a BOOL is 0 or 1 where a number is due
     bool real_literals_are_lreal = false;  ///< `i * 0.1` of an INT is an LREAL, else a REAL
     bool loops_look_again = false;         ///< FOR reads its limit and step in each pass, else once
-    bool reals_leave_lowest_bits = false;  ///< REAL_TO_USINT(300.0) is 44, else a fault
-    bool rounds_away = false;              ///< REAL_TO_INT(2.5) is 3, else the even one
+    BeyondType beyond_type = BeyondType::fault;
+    bool rounds_away = false;                 ///< REAL_TO_INT(2.5) is 3, else the even one
     bool enumerations_begin_at_zero = false;  ///< where one of its values is 0, else at the first
-    bool zero_divides_to_zero = false;        ///< x / 0 and x MOD 0 are 0, else a fault
+    ByZero by_zero = ByZero::fault;
     bool times_count_ms = false;       ///< a TIME is whole ms in 32 bits, also what is reckoned
     bool dates_count_seconds = false;  ///< a DT and a DATE are whole seconds, a TOD whole ms, in 32
                                        ///< bits, also what is reckoned

@@ -118,9 +118,9 @@ void pass_text(TextCursor& in) {
     };
     pass_until("'\n");
     const std::size_t end_of_line = in.at;
-    const bool is_of_br = in.dialect.vendor == Vendor::automation_studio;
     const bool ends_so = in.text[in.text.find_last_not_of(" \t\r", in.at - 1)] == ';';
-    if (in.peek() == '\n') pass_until(is_of_br && !ends_so ? "'" : "';");
+    if (in.peek() == '\n')
+        pass_until(in.dialect.open_texts_end_with_lines && !ends_so ? "'" : "';");
     const std::size_t behind = in.text.find_first_not_of(" \t", in.at + 1);
     const bool is_whole = in.peek() == '\'' && behind != in.text.npos &&
                           in.text.find_first_of(";,)]\r\n", behind) == behind;
@@ -151,7 +151,7 @@ void read_text(TextCursor& in) {
 
 /// `10.` of CODESYS, at the '.'.
 bool is_end_of_real(const TextCursor& in) {
-    return in.dialect.vendor == Vendor::codesys && in.peek(1) != '.' && !is_letter(in.peek(1));
+    return in.dialect.points_may_end_reals && in.peek(1) != '.' && !is_letter(in.peek(1));
 }
 
 void read_number(TextCursor& in) {
@@ -190,7 +190,7 @@ void read_prefix(TextCursor& in, std::string_view text) {
         return void(in.add(Word::duration));
     }
     if (!find_called(time_prefixes, text)) return;
-    if (in.dialect.vendor == Vendor::matiec) {
+    if (in.dialect.durations_may_stand_apart) {
         in.skip_while([](char c) { return c == ' ' || c == '\t'; });
         in.start = in.at;
     }
@@ -225,7 +225,7 @@ bool is_declared_or_assigned(const TextCursor& in) {
 }
 
 bool skip_section(TextCursor& in, std::string_view word) {
-    if (!in.new_line || in.dialect.vendor != Vendor::codesys) return false;
+    if (!in.new_line || !in.dialect.has_sections_of_exports) return false;
     const std::size_t end = end_of_section(in.text, in.at, word);
     if (end != in.text.npos) in.at = end;
     return end != in.text.npos;
@@ -244,8 +244,7 @@ void read_word(TextCursor& in) {
         return in.add(Word::name), in.skip_to_end_of_line();
     const bool is_variable = word == Word::region_ && (!in.new_line || is_declared_or_assigned(in));
     const bool is_part = after_dot && !in.new_line;  // else somebody is about to write it
-    const bool is_foreign =
-        word == Word::goto_ && in.dialect.vendor == Vendor::codesys;  // it has JMP
+    const bool is_foreign = word == Word::goto_ && in.dialect.goto_is_a_name;  // it has JMP
     if (!word || is_part || is_variable || is_foreign) return void(in.add(Word::name));
     in.add(*word);
     if (word == Word::region_ || word == Word::end_region_) in.skip_to_end_of_line();  // a title
@@ -259,8 +258,8 @@ void read_token(TextCursor& in) {
     if (c == '\'') return read_text(in);
     if (c == '"' || c == '#') return read_marked_name(in);
     if (c == '%' && is_direct(in)) return read_direct(in);
-    const bool is_of_ax = in.is_at("&&") && in.dialect.vendor == Vendor::none;
-    if (is_of_ax) return in.at += 2, void(in.add(Word::ampersand));
+    if (in.is_at("&&") && in.dialect.ampersands_may_be_two)
+        return in.at += 2, void(in.add(Word::ampersand));
     for (const Sign& sign : signs()) {
         if (!in.is_at(sign.text)) continue;
         in.at += sign.text.size();

@@ -92,7 +92,7 @@ void parse_step(Parsing& p, Pou& pou) {
     step.is_initial = same_name(opener.text, "initial_step");
     step.name = expect_name(p, "the name of the step");
     expect(p, Word::colon, "after the name");
-    const bool has_statements = p.source->dialect.vendor == Vendor::codesys;
+    const bool has_statements = p.source->dialect.charts == ChartRules::codesys;
     while (!p.panic && !p.says("end_step") && !p.at_chart() &&
            (p.is_name() || (has_statements && !is_end(p.here().word)))) {
         if (has_statements && !at_association(p)) {
@@ -139,7 +139,8 @@ void parse_transition(Parsing& p, Chart& chart) {
     made.to = parse_steps(p);
     expect(p, Word::assign, "before the condition");
     made.condition = parse_expression(p);
-    const bool is_open = p.says("end_transition") && p.source->dialect.vendor == Vendor::codesys;
+    const bool is_open =
+        p.says("end_transition") && p.source->dialect.charts == ChartRules::codesys;
     if (!p.panic && !is_open) end_statement(p);
     end_part(p, "end_transition", opener);
 }
