@@ -77,7 +77,7 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
 
 // any_inputs.cpp
 
-/// Of an input that is ANY, as CODESYS and TwinCAT have it.
+/// Whether an input is ANY, as CODESYS and TwinCAT have it.
 bool is_any_input(const Type& type);
 
 /// `value`, a variable of any type, becomes what such an input has inside: its class, where it is,

@@ -77,7 +77,7 @@ struct ChartWriter {
         depend(c, type, at.place);
         return made;
     }
-    /// Of an action's chart it is seen in the action alone.
+    /// A step of an action's chart is seen in the action alone.
     Variable& declare_step(Routine& seen, const Token& at, const Type* type) {
         const std::string_view full = c.checked.names.emplace_back(within() + std::string(at.text));
         Variable& made = declare(at, full, type);
@@ -124,7 +124,7 @@ void write_action_of_matiec(ChartWriter& w, const Token& action,
 
 // chart_flags.cpp
 
-/// Of the variable that tells whether a transition fires.
+/// The name of the variable that tells whether a transition fires.
 std::string_view fired_name(ChartWriter& w, std::size_t number);
 
 /// A variable of CODESYS that the block declares, by whose name its charts are told what to do, or

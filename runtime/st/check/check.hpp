@@ -20,7 +20,7 @@ struct Checked {
     bool refers_to_in_outs = false;  ///< to what a VAR_IN_OUT is given
     std::deque<std::string> names;   ///< of variables that no source declares
     bool dispatches = false;         ///< calls find routines by instances
-    /// Of the program's addresses that become numbers (`code/addresses.hpp`); null: none does.
+    /// What the program's addresses that become numbers stand in (`code/addresses.hpp`), or null.
     Variable *numbered = nullptr, *numbers = nullptr;
     Image image = {};                                 ///< the process image
     bool is_referred[Image::parts] = {};              ///< of it: pointers go beyond what is named
@@ -41,8 +41,8 @@ struct Evaluated {
     Constant value = {};
 };
 
-/// Of an expression with its type, made of constants, operators, conversions and functions of the
-/// standard alone: the bits are to be those of a scan, so the machine does it.
+/// The value of an expression with its type, of constants, operators, conversions and functions of
+/// the standard alone: the bits are to be those of a scan, so the machine does it.
 using Evaluate = Evaluated (*)(Expression&);
 
 /// Checks `tree` and notes in it what it found. With a mistake in `out` the result is of no use,

@@ -77,7 +77,7 @@ const Type* convert_result(Checking& c, Expression*& e, const Type& from, const 
 /// integers: with the wanted one, if that is wider.
 void reinterpret(Checking& c, Expression& e, Kind from, const Type* expected = nullptr);
 
-/// Of a CHAR and a STRING one becomes what the other is.
+/// A CHAR beside a STRING becomes one, or the STRING a CHAR.
 void unite_texts(Checking& c, Expression*& a, Expression*& b);
 
 /// Gives a number without type that of the other one, if it fits.

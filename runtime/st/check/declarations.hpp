@@ -27,7 +27,7 @@ void keep_once(Checking& c, Variable& variable);
 /// a base; null: it is one, or there are none.
 const std::vector<Argument>* constructor_arguments(const TypeText* text, const Type* type);
 
-/// Of a variable or member that would be a block of the program, such as AXIS.
+/// Tells that a variable or member would be a block of the program, such as AXIS.
 void refuse_object(Checking& c, const Declaration& declared, const Type* type);
 
 /// Variables, results and constants of all routines, and which they are made of.
@@ -35,7 +35,7 @@ void declare_routines(Checking& c);
 
 // own_instances.cpp
 
-/// Of what a method declares: an instance of its own block, or of one that has an instance of that
+/// Whether a method declares an instance of its own block, or of one that has an instance of that
 /// again, if in a method alone, for which an instance has no room. It stands beside all blocks, so
 /// the method does not run within itself (Fault::runs_already).
 bool is_its_own_block(Checking& c, const Routine& routine, const Type* type);
@@ -65,7 +65,7 @@ bool is_folder(const Pou& pou);
 
 // initial_values.cpp
 
-/// Of all variables, and what stands behind BEGIN of data blocks.
+/// Checks those of all variables, and what stands behind BEGIN of data blocks.
 void check_initial_values(Checking& c);
 /// What the variable begins with; of `a, b : INT := 2 + 3` it is checked once for all.
 void check_initial(Checking& c, Variable& variable);

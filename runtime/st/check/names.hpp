@@ -11,7 +11,7 @@ inline std::string_view without_point(std::string_view name) {
 
 /// In the routine, then in its block, then among the globals; null if there is none.
 Variable* find_variable(Checking& c, const Token& token);
-/// Of the routine or its block, which hides what stands beside them.
+/// Whether it is of the routine or its block, which hides what stands beside them.
 bool is_own_variable(const Checking& c, const Token& token);
 /// The block at hand, where it has a method of that name, which hides functions, programs and
 /// global variables. Null: it has none, or an instance of its own is called so.

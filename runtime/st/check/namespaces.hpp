@@ -28,7 +28,7 @@ std::optional<Token> without_project(Checking& c, Token name);
 
 /// Tells that a namespace is unknown, or has no such name, unless that was told.
 void refuse_qualified(Checking& c, const Token& name);
-/// Of a member: the same, where what is before its last point is a namespace. False: it is none.
+/// The same, where what is before the last point of a member is a namespace. False: it is none.
 bool refuse_member_of_namespace(Checking& c, const Expression& member);
 /// `Limits.typo` of a list of globals that has none of that name, which was told. False: it is no
 /// list.
@@ -36,7 +36,7 @@ bool refuse_of_list(Checking& c, const Expression& member);
 
 /// What stands there may be of a namespace that is unknown.
 bool may_be_elsewhere(Checking& c, Place place);
-/// Of a USING whose namespace is not there, and of which nothing is named.
+/// Tells of a USING whose namespace is not there, and of which nothing is named.
 void warn_of_usings(Checking& c);
 
 }  // namespace lineshaft::st

@@ -11,7 +11,7 @@ namespace lineshaft::st {
 
 /// Its value is known, and its type.
 bool is_constant(const Expression& expression);
-/// Of a constant that is a number.
+/// The value of a constant that is a number.
 double as_real(const Expression& constant);
 
 /// A node where `like` stands, without operands.
@@ -57,7 +57,7 @@ Expression* make_call(Checking& c, const Expression& like, Expression* callee,
                       std::vector<Argument> arguments);
 /// The call with other arguments.
 Expression* make_with(Checking& c, const Expression& call, std::vector<Argument> arguments);
-/// Of a function of the standard's own sources.
+/// A call of a function of the standard's own sources.
 Expression* make_call(Checking& c, std::string_view function, Expression* argument);
 
 /// `target := value;`

@@ -12,7 +12,7 @@ const Type& pointer_to(Checking& c, const Type& target);
 /// REFERENCE TO, REF_TO, POINTER TO. What it is to may be declared further down, or be what it is
 /// in.
 const Type* resolve_reference(Checking& c, const TypeText& text);
-/// Of those that had to wait until all types are known.
+/// Resolves those that had to wait until all types are known.
 void resolve_targets(Checking& c);
 
 /// A number of 32 bits or more holds where a POINTER points, and is made one again.

@@ -8,7 +8,7 @@ namespace lineshaft::st {
 /// the name is none. Its number where that is due, else its signal.
 std::optional<const Type*> check_s5_name(Checking& c, Expression*& e, const Type* expected);
 
-/// Of a TIMER or a COUNTER, `type`: its signal is meant where no number is due.
+/// The signal of a TIMER or a COUNTER, `type`, is meant where no number is due.
 const Type* signal_of_s5(Checking& c, Expression*& e, const Type& type, const Type* expected);
 
 /// `T1 := FALSE;`, as a coil of LAD resets it; false where it is no such.

@@ -88,8 +88,8 @@ void rewrite_demux(Checking& c, Statement*& s);
 /// Serialize, BLKMOV and their like of the prelude with the bytes of a copy of what they are given.
 /// False: it is another call.
 bool rewrite_bytes(Checking& c, Statement*& s, const Routine& called);
-/// Of Serialize and Deserialize: of a VARIANT, and of what stands in an expression, which is given
-/// as one.
+/// Serialize and Deserialize of a VARIANT, and of what stands in an expression, which is given as
+/// one.
 bool take_as_variant(Checking& c, Expression*& e, const Routine& called);
 /// What these do with a VARIANT, of each type that one is of.
 void write_serializations(Checking& c);

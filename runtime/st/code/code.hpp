@@ -128,7 +128,7 @@ struct Code {
     std::vector<CoverPoint> points;    ///< only with coverage
     std::unique_ptr<std::atomic<std::uint64_t>[]> hits;  ///< of each of them
     mutable Witness* witness = nullptr;  ///< of tests; without one an assertion ends what runs
-    /// Of an instruction of each class [ns], where what is executed is counted.
+    /// What an instruction of each class takes [ns], where what is executed is counted.
     std::optional<InstructionTimes> times;
     /// Null: the machine interprets it. What is counted has none.
     std::shared_ptr<const Native> native;
@@ -149,7 +149,7 @@ struct Code {
         type.scan_blocks(block, 1, now, inner);
     }
 
-    /// Of a jump's address; none of this code if it is not one.
+    /// The instruction at a jump's address; none of this code if it is not one.
     std::uint64_t place_of(std::uint64_t address) const {
         const auto first = reinterpret_cast<std::uint64_t>(instructions.data());
         const std::uint64_t distance = address - first;

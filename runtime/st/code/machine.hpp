@@ -33,7 +33,7 @@ class Probe {
     /// Before each statement of one that is stepped.
     virtual void at(const Halt& halt) = 0;
 
-    /// Of each instruction the first of the statements that begin there, plus 1; or 0.
+    /// The first of the statements that begin at each instruction, plus 1; or 0.
     const std::vector<std::uint32_t>& marks() const { return marks_; }
 
   private:

@@ -86,7 +86,7 @@ std::uint64_t remainder(std::uint64_t a, std::uint64_t b) {
     }
 }
 
-/// Of a whole number.
+/// Whether the type has that whole number.
 template <class T>
 bool fits(double value) {
     constexpr double beyond = 2.0 * static_cast<double>(std::numeric_limits<T>::max() / 2 + 1);
@@ -143,7 +143,7 @@ inline std::uint64_t product(std::uint64_t a, std::uint64_t b) {
     return a * b;
 }
 
-/// Of two NaNs the first one. A compiler may take either, another one in each place.
+/// The first one of two NaNs. A compiler may take either, another one in each place.
 inline double sum(double a, double b) {
 #ifdef __x86_64__
     asm("addsd %1, %0" : "+x"(a) : "xm"(b));
@@ -181,7 +181,7 @@ inline std::optional<std::uint64_t> from_bcd(std::uint64_t digits) {
     return value;
 }
 
-/// Of a value that has no more than so many digits.
+/// The digits of a value; empty: it has more than so many.
 inline std::optional<std::uint64_t> to_bcd(std::uint64_t value, std::uint32_t digits) {
     std::uint64_t made = 0;
     for (std::uint32_t i = 0; i < digits; ++i, value /= 10) made |= value % 10 << (4 * i);
@@ -216,7 +216,7 @@ void recode_text(std::byte* to, const std::byte* from, std::uint32_t room);
 bool is_too_long(const std::byte* text, std::uint64_t room);
 std::uint64_t length_of_text(const std::byte* text, bool in_units);
 
-/// Of `from` those characters from `first` (0) on, to a text that has `room`;
+/// Puts characters of `from`, from `first` (0) on, behind a text that has `room`;
 /// false where that cuts them short.
 bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
                  std::uint32_t room);
@@ -224,8 +224,8 @@ bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 
-/// Of a time as a text, beside its kind: the number of its TimeForm times this, and that it has no
-/// sign.
+/// What a time that becomes a text has beside its kind: the number of its TimeForm times this, and
+/// that it has no sign.
 inline constexpr std::uint32_t time_forms = 0x100, of_unsigned = 0x1000;
 
 /// In a number of room: what is no character of the text is read as 0 and not written, but for one
@@ -283,7 +283,7 @@ T number_of_text(const std::byte* from, bool has_groups);
 std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
 double s7_real_of_text(const std::byte* from);
 
-/// Of 'TRUE' in any letters and of '1'; `is_strict`: of what begins with 'TRUE' or 'true', behind
+/// 1 of 'TRUE' in any letters and of '1'; `is_strict`: of what begins with 'TRUE' or 'true', behind
 /// blanks, too, as CODESYS has it.
 std::uint64_t truth_of_text(const std::byte* from, bool is_strict);
 
@@ -343,8 +343,8 @@ struct Frames {
           top(calls),
           pile(recurring) {}
 
-    /// Of an address: the number of an instance of the program plus 1, or 0 for the block itself,
-    /// times 2^32, plus a slot.
+    /// Where an address leads: it is the number of an instance of the program plus 1, or 0 for the
+    /// block itself, times 2^32, plus a slot.
     std::byte* place(std::uint64_t address) const {
         const std::uint64_t space = address >> 32;
         std::byte* first = space == 0 ? root : context.instances[space - 1];
@@ -368,7 +368,7 @@ struct Frames {
     }
     std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
 
-    /// Of the instance at the address, which is one: what that method is, to slot 0, and the
+    /// What that method is of the instance at the address, which is one, to slot 0, and the
     /// address of what is given to it, to the next one. False: there is no room to call it.
     bool find(std::byte* to, std::uint64_t address, std::uint32_t method) const;
     /// Whether it has that method, or is of that block.
@@ -397,8 +397,8 @@ struct Frames {
 
     /// Whether what runs on that frame at that instruction, and what called it, runs.
     void mark(std::uint64_t at, std::uint64_t frame, bool runs) const;
-    /// Of a scan that ended: the instruction that it goes on with, on the frame that has the
-    /// nearest __TRY around it; empty: none has, or nothing catches that fault.
+    /// The instruction that a scan that ended goes on with, on the frame that has the nearest __TRY
+    /// around it; empty: none has, or nothing catches that fault.
     std::optional<std::uint64_t> caught(Fault fault);
     /// The number that CODESYS has of the fault that was caught last.
     std::uint64_t exception() const;
@@ -411,7 +411,7 @@ struct Frames {
         base = address;
     }
 
-    /// Of a test: false for a time that would go back, or end.
+    /// Lets time pass in a test; false for a time that would go back, or end.
     bool advance(std::int64_t by, std::int64_t interval) const;
 
     /// `behind` an assertion that does not hold.
@@ -421,7 +421,7 @@ struct Frames {
         if (word(root, cut_slot) == 0) set_word(root, cut_slot, behind);
     }
 
-    /// Of a call that begins now: no other one of the same frame has it.
+    /// The number of a call that begins now: no other one of the same frame has it.
     std::uint64_t number_of_call(std::int64_t left) const {
         return static_cast<std::uint64_t>(now.index + 1) << 32 | static_cast<std::uint32_t>(left);
     }
@@ -449,7 +449,7 @@ struct Frames {
         return word(top, 0);
     }
 
-    /// Of a scan, at that instruction.
+    /// Ends a scan, at that instruction.
     Fault end(Fault fault, std::uint64_t at) const;
 
   private:
@@ -459,7 +459,7 @@ struct Frames {
     std::byte* pile_begin() const;
     Record last_record() const;
     std::byte* kept_by(const Record& record) const;
-    /// Of the calls that a fault ends, where so many run behind it.
+    /// Forgets the calls that a fault ends, where so many run behind it.
     void unwind(std::uint64_t calls);
     bool keep(const Record& record);
 };

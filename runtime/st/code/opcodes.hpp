@@ -16,7 +16,7 @@
 /// `element` of an array; GO(to) jumps to c, AGAIN(to) too and takes fuel; CALL and LEAVE begin and
 /// end a call; FAIL ends the scan with a fault.
 ///
-/// Of packed memory the lower half of c is where a value begins [bits], on from what slot d has,
+/// In packed memory the lower half of c is where a value begins [bits], on from what slot d has,
 /// and the upper one, UPPER(to), its PackedFormat; of what a reference is to (`..._through`) the
 /// number of the value's shape.
 ///

@@ -28,7 +28,7 @@ struct Shape {
     std::uint64_t bits = 0, slots = 0;
     std::uint64_t stride = 0;   ///< of an array: bits from an element to the next one
     std::uint32_t element = 0;  ///< its elements' shape
-    /// Of a structure its members in Code::members; of a block its variables, which have slots.
+    /// The members of a structure in Code::members; the variables of a block, which have slots.
     std::uint32_t first = 0;
     std::uint32_t count = 0;  ///< elements, members, variables
     std::uint32_t base = 0;   ///< of a block: that of its base plus 1; 0: it has none

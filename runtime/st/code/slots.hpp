@@ -7,8 +7,8 @@
 
 namespace lineshaft::st {
 
-/// Of a value that is one of `count` from `lower` on: the place of an element in an array, or in
-/// `Code::numbers` of an enumeration's number or a CASE's jump.
+/// What is found by a value that is one of `count` from `lower` on: the place of an element in an
+/// array, or in `Code::numbers` of an enumeration's number or a CASE's jump.
 struct IndexTable {
     std::int64_t lower = 0;
     std::uint64_t count = 0, stride = 1, first = 0;
@@ -44,7 +44,7 @@ struct EndOfScan {
     std::uint32_t depth = 0;  ///< calls that ran
     std::uint64_t frame = 0;  ///< its address
 
-    /// Of the two words that say it.
+    /// What the two words say.
     static EndOfScan of(std::uint64_t place, std::uint64_t calls) {
         return {static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(calls),
                 place >> 32 << 32 | calls >> 32};

@@ -24,7 +24,7 @@ struct Native {
     const std::byte* first = nullptr;   ///< of the memory that has it
     std::size_t size = 0;               ///< of that memory [bytes]
     std::vector<std::uint32_t> places;  ///< of each instruction, from `first` on
-    /// Of each routine what a compiler made, as soon as it did: `compile`.
+    /// What a compiler made of each routine, as soon as it did: `compile`.
     std::atomic<const NativeEntry*> compiled = nullptr;
 
     Native() = default;
@@ -42,7 +42,7 @@ struct Native {
     }
 };
 
-/// Of code that is verified, and stays where it is. Null where there is no such code: on another
+/// Native code of code that is verified, and stays where it is. Null: there is none, on another
 /// processor, for an operand that does not fit its hole, or where the system refuses memory that
 /// is executed, which `is_refused` tells from then on.
 std::shared_ptr<const Native> native_code(const Code& code);
