@@ -144,7 +144,7 @@ void check_special(Checking& c, Statement*& s) {
         case Rewriting::move_block:
         case Rewriting::fill_block:
             return rewrite_block_move(c, s);
-        case Rewriting::none:
+        case Rewriting::stays:
         case Rewriting::demux:
             break;
     }

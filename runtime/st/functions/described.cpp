@@ -5,7 +5,7 @@ namespace lineshaft::st {
 namespace {
 
 // clang-format off
-constexpr DescribedFunction references[] = {
+constexpr DescribedFunction described_references[] = {
     {"ADR(IN: ANY): POINTER", "where a variable is, for a POINTER TO its type"},
     {"REF(IN: ANY): REF_TO", "a reference to a variable"},
     {"SIZEOF(IN: ANY): UDINT", "the bytes that a variable or a type has on a controller"},
@@ -16,7 +16,7 @@ constexpr DescribedFunction references[] = {
     {"__POUNAME(): STRING", "the name of the block or function that it stands in"},
     {"__POSITION(): STRING", "the line and column that it stands at"},
 };
-constexpr DescribedFunction variants[] = {
+constexpr DescribedFunction described_variants[] = {
     {"TypeOf(IN: VARIANT): a type", "compared with a variable or a type: whether both are of one type"},
     {"TypeOfElements(IN: VARIANT): a type", "the same of an array's elements"},
     {"IS_ARRAY(IN: VARIANT): BOOL", "whether it is an array"},
@@ -24,7 +24,7 @@ constexpr DescribedFunction variants[] = {
     {"VariantPut(SRC: ANY; DST: VARIANT)", "copies SRC to what DST is; of another type nothing, and ENO is FALSE"},
     {"MOVE_BLK_VARIANT(SRC: VARIANT; COUNT, SRC_INDEX, DEST_INDEX: ANY_INT; DEST: VARIANT): INT", "copies COUNT elements, counted from 0, of one array to those of another; gives 0 or a code of what is wrong"},
 };
-constexpr DescribedFunction dates[] = {
+constexpr DescribedFunction described_dates[] = {
     {"CONCAT_DATE(YEAR, MONTH, DAY: ANY_INT): DATE", "the date; what is none is a fault"},
     {"CONCAT_TOD(HOUR, MINUTE, SECOND, MILLISECOND: ANY_INT): TOD", "the time of day"},
     {"CONCAT_LTOD(HOUR, MINUTE, SECOND, MILLISECOND: ANY_INT): LTOD", "the time of day"},
@@ -52,7 +52,7 @@ constexpr DescribedFunction dates[] = {
     {"S5TIME_TO_TIME(IN: S5TIME): TIME", "the time of three digits and a base"},
     {"RUNTIME(MEM: LREAL): LREAL", "the time since the call that left MEM [s], which it writes; within a scan none passes"},
 };
-constexpr DescribedFunction bytes[] = {
+constexpr DescribedFunction described_bytes[] = {
     {"PEEK(area, dbNumber, byteOffset: ANY_INT): BYTE", "a byte of the inputs, outputs or memory bits (areas 16#81, 16#82, 16#83)"},
     {"PEEK_BYTE(area, dbNumber, byteOffset: ANY_INT): BYTE", "the same as PEEK"},
     {"PEEK_WORD(area, dbNumber, byteOffset: ANY_INT): WORD", "two bytes there, the highest first"},
@@ -70,7 +70,7 @@ constexpr DescribedFunction bytes[] = {
     {"UBLKMOV(SRCBLK, DSTBLK: ANY): INT", "the same as BLKMOV"},
     {"FILL(BVAL, BLK: ANY): INT", "writes the bytes of BVAL again and again, until BLK is full; gives 0"},
 };
-constexpr DescribedFunction digits[] = {
+constexpr DescribedFunction described_digits[] = {
     {"INT_TO_BCD16(IN: INT): WORD", "three decimal digits, the four bits on the left all 1 below 0"},
     {"DINT_TO_BCD32(IN: DINT): DWORD", "seven decimal digits, the four bits on the left all 1 below 0"},
     {"BCD16_TO_INT(IN: WORD): INT", "the number of three decimal digits"},
@@ -84,7 +84,7 @@ constexpr DescribedFunction digits[] = {
     {"EDGEPOS(IN: BOOL): BOOL", "whether IN has become TRUE since that"},
     {"EDGENEG(IN: BOOL): BOOL", "whether IN has become FALSE since that"},
 };
-constexpr DescribedFunction characters[] = {
+constexpr DescribedFunction described_characters[] = {
     {"STRG_VAL(IN: STRING; FORMAT: WORD; P: UINT; OUT => ANY_NUM)", "the number that a text has from character P on; where it has none OUT is 0 and ENO FALSE"},
     {"VAL_STRG(IN: ANY_NUM; SIZE, PREC: USINT; FORMAT: WORD; P: UINT; OUT: STRING)", "writes a number with PREC digits behind the point into SIZE characters of OUT from P on"},
     {"Strg_TO_Chars(Strg: STRING; pChars: DINT; Cnt => UINT; Chars: ARRAY)", "writes the characters of a text to elements from pChars on, counted from 0"},
@@ -93,8 +93,8 @@ constexpr DescribedFunction characters[] = {
     {"ATH(IN: STRING; N: UINT; OUT: ARRAY): WORD", "makes bytes of N hexadecimal digits; gives 0 or a code of what is wrong"},
 };
 constexpr DescribedSubject subjects[] = {
-    {"references", references}, {"variants", variants}, {"dates", dates},
-    {"bytes", bytes}, {"digits", digits}, {"characters", characters}};
+    {"references", described_references}, {"variants", described_variants}, {"dates", described_dates},
+    {"bytes", described_bytes}, {"digits", described_digits}, {"characters", described_characters}};
 // clang-format on
 
 }  // namespace

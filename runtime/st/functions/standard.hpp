@@ -53,7 +53,7 @@ enum class Eno : std::uint8_t {
 
 /// What check/rewrites.cpp puts for a statement that calls the function.
 enum class Rewriting : std::uint8_t {
-    none,
+    stays,
     demux,
     scatter,
     gather,
@@ -146,7 +146,7 @@ struct StandardFunction {
     Emit emit;                      ///< null where the checker puts something else for the call
     Op op;                          ///< for `emit`: of shifts that of 8 bits
     Word word = Word::end_of_file;  ///< of `operation`
-    Rewriting rewriting = Rewriting::none;  ///< of `statement`
+    Rewriting rewriting = Rewriting::stays;  ///< of `statement`
     Eno eno;
     bool is_pure;  ///< the same of the same arguments, and nothing is written
 };

@@ -15,14 +15,14 @@ namespace {
 constexpr int deepest_comment = 200;
 
 /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
-bool is_translated_comment(const Characters& in) {
+bool is_translated_comment(const TextCursor& in) {
     const auto& tokens = in.tokens.tokens;
     if (!in.is_at("(/*") || (!tokens.empty() && tokens.back().word == Word::name)) return false;
     const std::size_t end = in.text.find("*/", in.at);
     return end != std::string_view::npos && in.text.substr(end).starts_with("*/)");
 }
 
-void too_deep(Characters& in, Place where) {
+void too_deep(TextCursor& in, Place where) {
     in.tokens.mistakes.push_back(where.begin);
     in.out.add(code::too_deep_or_large, where.mark(),
                fmt::format("comments are nested deeper than {} levels", deepest_comment),
@@ -31,13 +31,13 @@ void too_deep(Characters& in, Place where) {
 }
 
 /// Stops at the line's last character.
-void skip_line(Characters& in) {
+void skip_line(TextCursor& in) {
     in.skip_to_end_of_line();
     --in.at;
 }
 
 /// Stops at the comment's last character.
-void skip_comment(Characters& in) {
+void skip_comment(TextCursor& in) {
     const std::size_t begin = in.at;
     if (const std::size_t end = end_of_tools_comment(in.text, in.at)) return void(in.at = end - 1);
     const bool standard = in.is_at("(*"), translated = in.is_at("(/*");
@@ -65,14 +65,14 @@ void skip_comment(Characters& in) {
             fmt::format("it ends with '{}'; comments nest, so each '{}' needs one", close, open));
 }
 
-void note_comment(Characters& in, void (*skip)(Characters&)) {
+void note_comment(TextCursor& in, void (*skip)(TextCursor&)) {
     const std::size_t begin = in.at;
     skip(in);
     in.tokens.comments.push_back({in.tokens.tokens.size(), in.new_line,
                                   in.place(begin, std::min(in.at + 1, in.text.size()))});
 }
 
-bool skip_foreign_code(Characters& in) {
+bool skip_foreign_code(TextCursor& in) {
     const std::size_t end = end_of_foreign_code(in.text, in.at);
     if (end == std::string_view::npos) return false;
     if (!std::exchange(in.has_foreign_code, true))
@@ -91,7 +91,7 @@ bool ends_choice(std::string_view pragma) {
 }
 
 /// Stops at the last character of the pragma that ends the part.
-void skip_part(Characters& in, bool may_choose) {
+void skip_part(TextCursor& in, bool may_choose) {
     std::size_t inner = 0;
     for (++in.at; in.at < in.text.size(); ++in.at) {
         if (in.text[in.at] != '{') continue;
@@ -109,7 +109,7 @@ void skip_part(Characters& in, bool may_choose) {
 }
 
 /// `{IF defined (x)}`, `{define x}`: a part whose condition does not hold is left out.
-void obey(Characters& in, Place pragma) {
+void obey(TextCursor& in, Place pragma) {
     const std::string_view text = pragma.text();
     note_definition(text, in.defined);
     if (says_pragma(text, "if")) {
@@ -122,7 +122,7 @@ void obey(Characters& in, Place pragma) {
     }
 }
 
-void skip_pragma(Characters& in) {
+void skip_pragma(TextCursor& in) {
     if (skip_foreign_code(in)) return;
     const std::size_t begin = in.at;
     for (; in.at < in.text.size() && in.text[in.at] != '}'; ++in.at)
@@ -136,7 +136,7 @@ void skip_pragma(Characters& in) {
 
 }  // namespace
 
-void skip_blanks(Characters& in) {
+void skip_blanks(TextCursor& in) {
     for (; in.at < in.text.size(); ++in.at) {
         const char c = in.text[in.at];
         if (c == ' ' || (c >= '\t' && c <= '\r' && c != '\n')) continue;

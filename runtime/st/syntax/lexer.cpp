@@ -25,12 +25,12 @@ constexpr std::string_view date_prefixes[] = {
     "ltod", "ltime_of_day", "ldt", "ldate_and_time", "dtl"};
 
 /// Once, and nothing else can be meant.
-void fail_as_binary(Characters& in, Place where) {
+void fail_as_binary(TextCursor& in, Place where) {
     in.at = in.text.size();
     in.fail(where, "the file is not a text", "save it as UTF-8");
 }
 
-void read_foreign(Characters& in) {
+void read_foreign(TextCursor& in) {
     const Utf8Character character = first_character(in.text.substr(in.at));
     in.at += character.bytes;
     const Place here = in.place(in.start, in.at);
@@ -47,12 +47,12 @@ void read_foreign(Characters& in) {
 }
 
 /// `:P` behind an address or a tag: what stands there now, which is what the image has.
-void skip_periphery(Characters& in) {
+void skip_periphery(TextCursor& in) {
     const bool goes_on = is_letter(in.peek(2)) || is_digit(in.peek(2)) || in.peek(2) == '_';
     if (in.dialect.peripheries_are_image && in.is_at(":P") && !goes_on) in.at += 2;
 }
 
-void read_marked_name(Characters& in) {
+void read_marked_name(TextCursor& in) {
     const bool local = in.peek() == '#';
     if (local) ++in.at;
     if (in.peek() == '"') {
@@ -86,11 +86,11 @@ void read_marked_name(Characters& in) {
 }
 
 /// `%X0`, or what follows the dot of a bit.
-bool is_direct(const Characters& in) {
+bool is_direct(const TextCursor& in) {
     return is_letter(in.peek(1)) || in.text.substr(0, in.at).ends_with('.');
 }
 
-void read_direct(Characters& in) {
+void read_direct(TextCursor& in) {
     ++in.at;
     in.skip_while([](char c) { return is_letter(c) || is_digit(c); });
     const bool partial = in.is_after_dot();
@@ -108,7 +108,7 @@ void read_direct(Characters& in) {
 
 /// To its closing quote, to the end of its line where there is none. It may go on in the next
 /// lines; one that lacks its quote has a ';' before the next one, of B&R where its line ends.
-void pass_text(Characters& in) {
+void pass_text(TextCursor& in) {
     const auto is_pair = [&] {
         return in.peek() == '$' ? in.peek(1) != '\n' && in.peek(1) != '\0' : in.is_at("''");
     };
@@ -128,7 +128,7 @@ void pass_text(Characters& in) {
 }
 
 /// Of a text without its quote, so that there is no other mistake.
-void refuse_open_text(Characters& in) {
+void refuse_open_text(TextCursor& in) {
     const bool escapes = in.text.substr(in.start, in.at - in.start).find("$'") != in.text.npos;
     in.out.add(
         code::character_of_no_word, in.place(in.start, in.start + 1).mark(),
@@ -140,7 +140,7 @@ void refuse_open_text(Characters& in) {
     in.at = std::max(in.text.find_last_not_of("); \t\r", last), in.start) + 1;
 }
 
-void read_text(Characters& in) {
+void read_text(TextCursor& in) {
     ++in.at;
     pass_text(in);
     const bool ends = in.peek() == '\'';
@@ -150,11 +150,11 @@ void read_text(Characters& in) {
 }
 
 /// `10.` of CODESYS, at the '.'.
-bool is_end_of_real(const Characters& in) {
+bool is_end_of_real(const TextCursor& in) {
     return in.dialect.points_may_end_reals && in.peek(1) != '.' && !is_letter(in.peek(1));
 }
 
-void read_number(Characters& in) {
+void read_number(TextCursor& in) {
     const auto digits = [&] { in.skip_while([](char c) { return is_digit(c) || c == '_'; }); };
     digits();
     if (in.peek() == '#') {
@@ -177,7 +177,7 @@ void read_number(Characters& in) {
     in.add(real ? Word::real : Word::integer);
 }
 
-void read_prefix(Characters& in, std::string_view text) {
+void read_prefix(TextCursor& in, std::string_view text) {
     in.add(Word::prefix);
     in.start = ++in.at;
     if (find_called(date_prefixes, text) && is_digit(in.peek())) {
@@ -200,7 +200,7 @@ void read_prefix(Characters& in, std::string_view text) {
 }
 
 /// `REF=`, and behind what may be assigned `S=` and `R=`.
-std::optional<Word> read_letter_assign(const Characters& in, std::string_view text) {
+std::optional<Word> read_letter_assign(const TextCursor& in, std::string_view text) {
     if (in.peek() != '=' || in.tokens.tokens.empty()) return {};
     if (same_name(text, "ref")) return Word::reference_assign;
     const Token& before = in.tokens.tokens.back();
@@ -213,25 +213,25 @@ std::optional<Word> read_letter_assign(const Characters& in, std::string_view te
 }
 
 /// `M0` of `M0.3`, as STEP 7 V5 writes it.
-bool is_classic_bit(const Characters& in, std::string_view text) {
+bool is_classic_bit(const TextCursor& in, std::string_view text) {
     return in.dialect.packs_as_s7 && in.peek() == '.' && is_digit(in.peek(1)) &&
            in.text[in.start] != '"' && read_classic_address(fmt::format("{}.0", text)).has_value();
 }
 
 /// A ':', ':=' or ',' follows.
-bool is_declared_or_assigned(const Characters& in) {
+bool is_declared_or_assigned(const TextCursor& in) {
     const std::size_t next = in.text.find_first_not_of(" \t", in.at);
     return next != std::string_view::npos && (in.text[next] == ':' || in.text[next] == ',');
 }
 
-bool skip_section(Characters& in, std::string_view word) {
+bool skip_section(TextCursor& in, std::string_view word) {
     if (!in.new_line || !in.dialect.has_sections_of_exports) return false;
     const std::size_t end = end_of_section(in.text, in.at, word);
     if (end != in.text.npos) in.at = end;
     return end != in.text.npos;
 }
 
-void read_word(Characters& in) {
+void read_word(TextCursor& in) {
     in.skip_name();
     const std::string_view text = in.text.substr(in.start, in.at - in.start);
     const bool after_dot = in.is_after_dot();
@@ -250,7 +250,7 @@ void read_word(Characters& in) {
     if (word == Word::region_ || word == Word::end_region_) in.skip_to_end_of_line();  // a title
 }
 
-void read_token(Characters& in) {
+void read_token(TextCursor& in) {
     in.start = in.at;
     const char c = in.peek();
     if (is_letter(c) || in.national_letter() != 0) return read_word(in);
@@ -273,7 +273,7 @@ void read_token(Characters& in) {
 Tokens read_tokens(const std::shared_ptr<const SourceFile>& file, Diagnostics& out,
                    SourceKind kind) {
     const Dialect& dialect = dialect_of(*file, kind);
-    Characters in(std::make_shared<const Source>(Source{file, dialect, kind}), out);
+    TextCursor in(std::make_shared<const Source>(Source{file, dialect, kind}), out);
     if (in.text.starts_with(utf8_byte_order_mark)) in.at = utf8_byte_order_mark.size();
     if (const std::size_t zero = in.text.find('\0'); zero != std::string_view::npos)
         fail_as_binary(in, in.place(zero, zero + 1));

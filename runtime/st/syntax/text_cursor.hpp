@@ -12,7 +12,7 @@ namespace lineshaft::st {
 
 /// A text that is taken apart: where the next character is, and what it has become so far. What
 /// reads a token (`lexer`), a comment or a pragma (`blanks`) moves it on.
-struct Characters {
+struct TextCursor {
     std::string_view text;
     const Dialect& dialect;
     Diagnostics& out;
@@ -25,7 +25,7 @@ struct Characters {
     std::vector<Place> choices = {};                    ///< each `{IF}` that is open
     Definitions defined = {};                           ///< by `{define}`
 
-    Characters(const std::shared_ptr<const Source>& source, Diagnostics& diagnostics);
+    TextCursor(const std::shared_ptr<const Source>& source, Diagnostics& diagnostics);
 
     char peek(std::size_t ahead = 0) const {
         return at + ahead < text.size() ? text[at + ahead] : '\0';
