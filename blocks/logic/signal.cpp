@@ -27,19 +27,15 @@ struct Share {
     double share = 1;
 };
 
-/// share_of(), from those used lately where it is among them: under jitter all filters of a task
-/// meet the same new interval, and the exponential takes ten times as long as the rest. A thread
-/// has its own, so that nobody waits; what is found is what would be computed.
-double recent_share(std::int64_t step, double time_constant) {
+/// Where share_of() is kept among those used lately: under jitter all filters of a task meet the
+/// same new interval, and the exponential takes ten times as long as the rest. A thread has its
+/// own, so that nobody waits; what is found is what would be computed.
+Share& recent_share(std::int64_t step, double time_constant) {
     constexpr int size_bits = 8;
     thread_local Share recent[1 << size_bits];
-    const std::uint64_t constant = bits(time_constant);
     const std::uint64_t mixed =
-        (static_cast<std::uint64_t>(step) ^ constant >> 20) * 0x9e3779b97f4a7c15u;
-    Share& share = recent[mixed >> (64 - size_bits)];
-    if (share.step != step || share.time_constant != constant)
-        share = {step, constant, share_of(step, time_constant)};
-    return share.share;
+        (static_cast<std::uint64_t>(step) ^ bits(time_constant) >> 20) * 0x9e3779b97f4a7c15u;
+    return recent[mixed >> (64 - size_bits)];
 }
 
 }  // namespace
@@ -89,10 +85,16 @@ std::span<const Field> FilterPt1::fields() {
 }
 
 void FilterPt1::scan(const Scan& now) {
-    if (now.time - last_time == share_step && bits(time_constant) == bits(share_constant))
-        follow(now);
-    else
-        follow_with_new_share(now);
+    const std::int64_t step = now.time - last_time;
+    if (step != share_step || bits(time_constant) != bits(share_constant)) {
+        const Share& recent = recent_share(step, time_constant);
+        if (recent.step != step || recent.time_constant != bits(time_constant))
+            return follow_with_new_share(now);
+        share_step = step;
+        share_constant = time_constant;
+        share = recent.share;
+    }
+    follow(now);
 }
 
 inline void FilterPt1::follow(const Scan& now) {
@@ -105,10 +107,11 @@ inline void FilterPt1::follow(const Scan& now) {
     last_time = now.time;
 }
 
-inline void FilterPt1::follow_with_new_share(const Scan& now) {
+void FilterPt1::follow_with_new_share(const Scan& now) {
     share_step = now.time - last_time;
     share_constant = time_constant;
-    share = recent_share(share_step, time_constant);
+    share = share_of(share_step, time_constant);
+    recent_share(share_step, time_constant) = {share_step, bits(time_constant), share};
     follow(now);
 }
 

@@ -56,7 +56,7 @@ struct FilterPt1 {
 
   private:
     void follow(const Scan& now);
-    void follow_with_new_share(const Scan& now);
+    [[gnu::noinline]] void follow_with_new_share(const Scan& now);
     [[gnu::cold]] void tell_why_not_finite();
 };
 

@@ -45,10 +45,10 @@ void feed_many(const Call& call) {
 
 void feed(const Call& call) {
     const auto& [first, second] = call.copies;
-    if (call.feed <= Feed::two_booleans) {
+    if (call.feed <= Feed::two_some_negated) {
         if (call.feed == Feed::no_wire) return;
         deliver<Transfer::boolean>(first);
-        if (call.feed == Feed::two_booleans) deliver<Transfer::boolean>(second);
+        if (call.feed >= Feed::two_booleans) deliver<Transfer::boolean>(second);
     } else if (call.feed <= Feed::two_words) {
         deliver<Transfer::word>(first);
         if (call.feed == Feed::two_words) deliver<Transfer::word>(second);

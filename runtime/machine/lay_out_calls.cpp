@@ -100,7 +100,10 @@ bool hold(const CallWires& wires, Call& call) {
     const auto& [booleans, words, widened, scaled] = wires;
     const std::size_t count = booleans.size() + words.size() + widened.size() + scaled.size();
     if (count == 0) return true;
-    if (count == booleans.size()) return only(booleans, Feed::boolean, Feed::two_booleans);
+    if (count == booleans.size())
+        return std::ranges::any_of(booleans, &Copy::negates)
+                   ? only(booleans, Feed::negated, Feed::two_some_negated)
+                   : only(booleans, Feed::boolean, Feed::two_booleans);
     if (count == words.size()) return only(words, Feed::word, Feed::two_words);
     return count == 1 && only(widened, Feed::widened, Feed::many);
 }

@@ -48,8 +48,8 @@ struct Wires {
 bool feed_and_scan(const FedBlock& call, const Scan& now);
 
 /// One entry of a task's list: blocks of one kind, of which none waits for another, one behind the
-/// other in memory.
-struct Call : FedBlock {
+/// other in memory. What `run` needs of a single block is one line of the cache.
+struct alignas(64) Call : FedBlock {
     FeedAndScan run = feed_and_scan;  ///< for a single block maybe what its kind brings along
     ScanBlocks scan = nullptr;
     std::size_t count = 0, size = 0;  ///< of blocks; [bytes] of each

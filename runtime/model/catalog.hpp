@@ -310,10 +310,14 @@ class Catalog {
             };
             using Input = std::remove_cvref_t<decltype(Block{}.*Block::main_input)>;
             constexpr bool is_boolean = std::is_same_v<Input, bool>;
-            constexpr Transfer as_is = is_boolean ? Transfer::boolean : Transfer::word;
+            constexpr Transfer as_is = is_boolean ? Transfer::plain : Transfer::word;
             set(is_boolean ? Feed::boolean : Feed::word, feed_and_scan<Block, as_is, false>);
             set(is_boolean ? Feed::two_booleans : Feed::two_words,
                 feed_and_scan<Block, as_is, true>);
+            if constexpr (is_boolean) {
+                set(Feed::negated, feed_and_scan<Block, Transfer::negated, false>);
+                set(Feed::two_some_negated, feed_and_scan<Block, Transfer::boolean, true>);
+            }
             if constexpr (std::is_same_v<Input, double>)
                 set(Feed::widened, feed_and_scan<Block, Transfer::widened, false>);
         }

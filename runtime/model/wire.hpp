@@ -18,7 +18,9 @@ struct Copy {
 
 /// What becomes of it on the way.
 enum class Transfer : std::uint8_t {
-    boolean,  ///< 1 byte, negated or as it is
+    boolean,  ///< 1 byte, negated or as it is: Copy::negates
+    plain,    ///< 1 byte, as it is
+    negated,  ///< 1 byte, negated
     word,     ///< 8 bytes, as they are
     widened,  ///< an integer to a real
 };
@@ -28,6 +30,10 @@ template <Transfer transfer>
 auto fetch(const Copy& wire) {
     if constexpr (transfer == Transfer::boolean)
         return read<bool>(wire.source) != wire.negates;
+    else if constexpr (transfer == Transfer::plain)
+        return read<bool>(wire.source);
+    else if constexpr (transfer == Transfer::negated)
+        return !read<bool>(wire.source);
     else if constexpr (transfer == Transfer::word)
         return read<std::uint64_t>(wire.source);
     else
@@ -41,7 +47,17 @@ void deliver(const Copy& wire) {
 }
 
 /// What feeds a call: what most of them have, or else all kinds.
-enum class Feed : std::uint8_t { no_wire, boolean, two_booleans, word, two_words, widened, many };
+enum class Feed : std::uint8_t {
+    no_wire,
+    boolean,
+    negated,
+    two_booleans,
+    two_some_negated,
+    word,
+    two_words,
+    widened,
+    many
+};
 
 /// A block, or the first of several, and what feeds it.
 struct FedBlock {

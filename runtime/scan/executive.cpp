@@ -100,10 +100,14 @@ bool Executive::scan_blocks(const Task& task, const Scan& scan) {
     return error;
 }
 
+void Executive::show(int index, const Scan& scan) {
+    for (Observer* observer : scan_observers_) observer->scanned(index, scan);
+}
+
 /// When what others see of the task's scan is in place.
 inline void Executive::conclude(int index, const State& state) {
     ++result_.scans.data()[index];
-    for (Observer* observer : scan_observers_) observer->scanned(index, state.scan);
+    if (!scan_observers_.empty()) show(index, state.scan);
     if (state.may_err) report_errors(index);
 }
 
@@ -116,15 +120,13 @@ inline void Executive::State::set_next(const Task& task) {
     due = later(later(due, task.every), off);
 }
 
-/// Where nothing waits: what is due runs at once.
-inline void Executive::run_due() {
-    if (next_outside_ <= now_ || interpolates_) act_from_outside();
-    if (next_due_ > now_) return;
+inline void Executive::run_tasks() {
+    const std::int64_t now = now_;
     std::int64_t next = never;
     int index = 0;
     const Task* task = machine_.tasks.data();
     for (State& state : states_) {
-        if (state.due <= now_ && !stopped_) {
+        if (state.due <= now && !stopped_) {
             begin(index, *task, state);
             state.may_err |= scan_blocks(*task, state.scan);
             conclude(index, state);
@@ -137,6 +139,21 @@ inline void Executive::run_due() {
     next_due_ = next;
 }
 
+/// Where nothing waits: what is due runs at once. So does what is due next, up to `last`, as long
+/// as nothing comes in between and nobody looks on.
+void Executive::run_due(std::int64_t last) {
+    if (next_outside_ <= now_ || interpolates_) act_from_outside();
+    if (next_due_ > now_) return;
+    const bool is_seen = interpolates_ || !observers_.empty();
+    const std::int64_t end = is_seen ? now_ : std::min({last, next_outside_ - 1, next_save_});
+    for (;;) {
+        run_tasks();
+        if (next_due_ > end || until_look_ <= 1 || stopped_ || read<bool>(until_)) return;
+        --until_look_;
+        now_ = next_due_;
+    }
+}
+
 bool Executive::run_until(std::int64_t time) {
     const std::int64_t last = std::min(time, machine_.duration);
     std::int64_t next = next_event();
@@ -144,7 +161,7 @@ bool Executive::run_until(std::int64_t time) {
     while (!ended_ && next <= last) {
         advance(next);
         if (nothing_waits_)
-            run_due();
+            run_due(last);
         else
             instant();
         has_run_ = true;

@@ -206,7 +206,8 @@ class Executive {
     void finish_top();
     void release();
     void release(int task, State& state);
-    void run_due();
+    void run_tasks();
+    void run_due(std::int64_t last);
     void start_pending();
     void make_pending(int task);
     int next_to_start() const;
@@ -215,6 +216,7 @@ class Executive {
     bool scan_blocks(const Task& task, const Scan& scan);
     void scan_forced(const Task& task, const Scan& scan);
     void publish(int task);
+    [[gnu::noinline]] void show(int index, const Scan& scan);
     void conclude(int index, const State& state);
 
     // executive_outside.cpp
@@ -284,7 +286,8 @@ class Executive {
 
 /// The end of time when the sum lies beyond it.
 inline std::int64_t later(std::int64_t time, std::int64_t by) {
-    return by > 0 && time > never - by ? never : time + by;
+    std::int64_t sum;
+    return __builtin_add_overflow(time, by, &sum) ? never : sum;
 }
 
 }  // namespace lineshaft

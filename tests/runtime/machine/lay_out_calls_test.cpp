@@ -142,9 +142,9 @@ TEST_CASE("link: a chain does the same alone and beside others, with which its w
                                                               {Transfer::word, false},
                                                               {Transfer::widened, false}});
     Executive(many.machine).run({});
-    for (const auto& [count, timers, filters] :
-         {std::tuple{1, Feed::boolean, Feed::widened},
-          std::tuple{2, Feed::two_booleans, Feed::many}, std::tuple{3, Feed::many, Feed::many}}) {
+    for (const auto& [count, timers, filters] : {std::tuple{1, Feed::negated, Feed::widened},
+                                                 std::tuple{2, Feed::two_some_negated, Feed::many},
+                                                 std::tuple{3, Feed::many, Feed::many}}) {
         Linked few = linked(chains(count), standard_blocks());
         const Task& task = few.machine.tasks.front();
         CHECK(task.wires.rows.empty());
@@ -209,6 +209,10 @@ struct Sources {
     }
 };
 
+bool is_of_booleans(Feed feed) {
+    return feed >= Feed::boolean && feed <= Feed::two_some_negated;
+}
+
 /// A block of the kind, fed by one or two wires.
 struct FedBlockOfKind {
     const BlockType& type;
@@ -222,10 +226,11 @@ struct FedBlockOfKind {
         call.size = type.size;
         call.scan = type.scan_blocks;
         call.feed = feed;
-        call.copies[0] = {sources.values[0], call.first + type.main_input.offset, true};
+        const bool negates = feed == Feed::negated || feed == Feed::two_some_negated;
+        call.copies[0] = {sources.values[0], call.first + type.main_input.offset, negates};
         for (const Field& field : type.fields)
             if (field.direction == Direction::input && field.offset != type.main_input.offset &&
-                size_of(field.type) == (feed == Feed::two_booleans ? 1 : 8))
+                size_of(field.type) == (is_of_booleans(feed) ? 1 : 8))
                 call.copies[1] = {sources.values[1], call.first + field.offset};
     }
 
@@ -240,7 +245,7 @@ struct FedBlockOfKind {
 };
 
 Type source_type(Feed feed, const BlockType& type) {
-    if (feed == Feed::boolean || feed == Feed::two_booleans) return Type::boolean;
+    if (is_of_booleans(feed)) return Type::boolean;
     const bool is_real = type.main_input.scan[static_cast<std::size_t>(Feed::widened)] != nullptr;
     return is_real && feed != Feed::widened ? Type::real : Type::integer;
 }
@@ -256,7 +261,8 @@ TEST_CASE("a block that is fed and scanned at once does as one that is fed, then
             const auto feed = static_cast<Feed>(i);
             Sources sources;
             FedBlockOfKind plain(type, feed, sources), fed(type, feed, sources);
-            const bool two = feed == Feed::two_booleans || feed == Feed::two_words;
+            const bool two = feed == Feed::two_booleans || feed == Feed::two_some_negated ||
+                             feed == Feed::two_words;
             if (two && !plain.call.copies[1].target) continue;
             fed.call.run = at_once;
             ++kinds;
