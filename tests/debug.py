@@ -671,7 +671,7 @@ def test_watches_of_all_that_the_language_names():
     text, path = folder / "named.st", folder / "named.yaml"
     text.write_text("FUNCTION Total : INT\nVAR_IN_OUT ar : ARRAY[*] OF INT; two : ARRAY[*, *] OF INT; END_VAR\n"
                     "Total := ar[LOWER_BOUND(ar, 1)] + two[2, 1];\nEND_FUNCTION\n"
-                    "PROGRAM Main\nVAR list : ARRAY[3..6] OF INT := [30, 40, 50, 60]; grid : ARRAY[1..2, 0..2] OF INT; motor : INT := 5;\n"
+                    "PROGRAM Main\nVAR list : ARRAY[3..6] OF INT := [30, 40, 50, 60]; grid : ARRAY[1..2, 0..2] OF INT; motor, main : INT := 5;\n"
                     "w : WORD := 16#1234; pb : POINTER TO BYTE; pi : POINTER TO INT; s : STRING(20) := 'abc'; wide : WSTRING(10) := \"a'$\"b\";\n"
                     "word AT %MW10 : WORD; r, n : INT; END_VAR\n"
                     "grid[2, 1] := 21; pb := ADR(w) + 1; pi := ADR(list[4]); word := word + 1;\nr := Total(list, grid);\nn := n + 1;\nEND_PROGRAM\n",
@@ -694,8 +694,9 @@ def test_watches_of_all_that_the_language_names():
     value = value_in(client, client.stack()[0]["id"])
     for watched, wanted in (("pb^", "16#12"), ("pb[0]", "16#12"), ("pi^", "40"), ("pi[1]", "50"), ("s[0]", "16#61"), ("s[3]", "16#0"),
                             ("SIZEOF(s)", "21"), ("SIZEOF(grid)", "12"), ("SIZEOF(INT)", "2"), ("wide", "\"a'$\"b\""), ("wide[1]", "16#27"),
-                            ("%MW10", "16#1"), ("%MB20", "16#1"), ("%MX20.0", "TRUE"), ("list", "ARRAY[3..6] OF INT")):
+                            ("%MW10", "16#1"), ("%MB20", "16#1"), ("%MX20.0", "TRUE"), ("main", "5"), ("list", "ARRAY[3..6] OF INT")):
         assert value(watched) == wanted, (watched, value(watched))
+    assert value("main.r") in ("0", "51"), value("main.r")  # the signal, though 'main' is a number here
     refusals_of(value, ("pi[9]", "to nothing"), ("s[30]", "no such character"), ("%MW9999", "not in the memory"))
     shown = client.inside(client.scopes(client.stack()[0]["id"])["Locals"])
     assert [client.inside(shown[name]["variablesReference"])[part]["evaluateName"] for name, part in (("grid", "[1]"), ("pb", "^"))] == ["grid[1]", "pb^"]
@@ -708,7 +709,7 @@ def test_what_is_no_signal_is_changed():
     text.write_text("TYPE Mode : (off, slow, fast); END_TYPE\nTYPE Pair : STRUCT low, high : WORD; END_STRUCT END_TYPE\n"
                     "TYPE Bytes : UNION whole : DWORD; pair : Pair; each : ARRAY[0..3] OF BYTE; END_UNION END_TYPE\n"
                     "FUNCTION_BLOCK Inner\nVAR name : STRING(5) := 'abc'; END_VAR\nname := name;\nEND_FUNCTION_BLOCK\n"
-                    "PROGRAM Main\nVAR u : Bytes; w : WSTRING(9); c : Inner; mode : Mode; n : INT; seen : INT; END_VAR\nVAR_TEMP t : STRING(9); END_VAR\n"
+                    "PROGRAM Main\nVAR u : Bytes; w : WSTRING(9); c : Inner; at : REF_TO INT; mode : Mode; n : INT; seen : INT; END_VAR\nVAR_TEMP t : STRING(9); END_VAR VAR CONSTANT fixed : STRING(9) := 'f'; END_VAR\n"
                     "n := n + 1;\nc();\nseen := LEN(c.name);\nEND_PROGRAM\n", encoding="utf-8")
     path.write_text("lineshaft: 1\ntasks: {t: {every: 10 ms}}\nsources: unions.st\nblocks: {main: {type: Main, task: t}}\n"
                     "run: {for: 0.1 s}\ntrace: {task: t, signals: [main.seen, main.n]}\n", encoding="utf-8")
@@ -733,7 +734,8 @@ def test_what_is_no_signal_is_changed():
     assert change(["Locals"], "mode", "2") == "Mode#off (fast from the next instant on)"
     for way, name, value, wanted in ((["Locals"], "mode", "3", "not a value"), (["Temporaries"], "t", "'a'", "no place that lasts"),
                                      (["Locals", "c", "Locals"], "name", "'too long'", "too long"), (["Locals", "u"], "pair", "1", "part by part"),
-                                     (["Locals", "u"], "whole", "'a'", "DWORD")):
+                                     (["Locals", "u"], "whole", "'a'", "DWORD"),
+                                     (["Locals"], "fixed", "'a'", "nothing that can be set"), (["Locals"], "at", "NULL", "refers to something")):
         try:
             raise AssertionError(change(way, name, value))
         except Refused as why:

@@ -256,8 +256,9 @@ class Adapter final : Front {
             throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
         const Frame& frame = frames_[number - 1];
         const Evaluated value = Expression(text, *frame.mark.file).value(frame);
-        if (!value.error.empty()) throw Refused(value.error);
-        return value.shown;
+        if (value.error.empty()) return value.shown;
+        if (!signal) throw Refused(value.error);
+        return show_signal(launched_->loaded.linked.machine, *signal);
     }
 
     Shown variable_in(const Json& arguments) {

@@ -66,7 +66,11 @@ Written write_by_hand(const Shown& shown, const std::string& value,
     };
     if (!shown.seat || frames.empty()) throw why_not("is nothing that can be set");
     const Seat& seat = *shown.seat;
-    if (!seat.type->is_scalar() && seat.type->kind != st::Type::Kind::text)
+    using Kind = st::Type::Kind;
+    if (seat.type->kind == Kind::handle || seat.type->kind == Kind::interface ||
+        seat.type->is_reference())
+        throw why_not("refers to something, which is not for a debugger to choose");
+    if (!seat.type->is_scalar() && seat.type->kind != Kind::text)
         throw why_not("is no value: what it has is set part by part");
     const Shown place{
         .name = {}, .value = {}, .at = seat.packed.type ? seat.packed.bytes : shown.at, .bytes = 1};

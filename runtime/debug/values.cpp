@@ -39,7 +39,9 @@ Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& 
     }
     const Seat seat = seat_of(variable, base, frame);
     if (!seat.at) return {.name = name, .value = "not in the machine's memory"};
-    return show(name, seat, variable.unit);
+    Shown shown = show(name, seat, variable.unit);
+    if (variable.constant) shown.seat = nullptr;
+    return shown;
 }
 
 /// An ARRAY[*] is passed on as where it is.
