@@ -193,12 +193,12 @@ def test_counts_of_what_is_passed_over():
 
 def test_log_points():
     client = Client(lineshaft)
-    client.launch(program, {motor: [{"line": line("count := count + 1;"), "logMessage": "now {speed} {count * 2} {no}"}]})
+    client.launch(program, {motor: [{"line": line("count := count + 1;"), "logMessage": "now {speed} {count * 2} {no} {{x}} }} {{{count}}}"}]})
     logged = []
     while (event := client._next("output"))["event"] != "exited":
         if event["event"] == "output" and event["body"]["output"].startswith("now"):
             logged.append(event["body"]["output"])
-    assert len(logged) == 101 and logged[5] == "now 3.0 mm/s 10 <'no' is not known here>\n", logged[:7]
+    assert len(logged) == 101 and logged[5] == "now 3.0 mm/s 10 <'no' is not known here> {x} } {5}\n", logged[:7]
     client.end()
 
 
@@ -603,6 +603,162 @@ def test_structured_text_tests():
     suite.write_text('<?xml version="1.0"?>\n<TcPlcObject><POU Name="MAIN"><Declaration>PROGRAM MAIN</Declaration>'
                      "<Implementation><ST>TcUnit.RUN();</ST></Implementation></POU></TcPlcObject>\n")
     assert "lineshaft new suites --from" in refused_launch(suite, "adds")
+
+
+def value_in(client, frame):
+    return lambda text: client.request("evaluate", expression=text, frameId=frame)["result"]
+
+
+def refusals_of(value, *cases):
+    """Of each expression what is said of it."""
+    for text, wanted in cases:
+        try:
+            raise AssertionError((text, value(text)))
+        except Refused as why:
+            assert wanted in str(why), (text, why)
+
+
+def test_properties():
+    """GET is called on a copy: nothing of the run changes, whatever it does, and one without an end is stopped."""
+    text, path = folder / "properties.st", folder / "properties.yaml"
+    text.write_text("INTERFACE IAny\nPROPERTY Twice : INT GET END_GET END_PROPERTY\nEND_INTERFACE\n"
+                    "FUNCTION Sum : INT\nVAR_INPUT a : INT; END_VAR\nIF a > 0 THEN Sum := a + Sum(a - 1); END_IF\nEND_FUNCTION\n"
+                    "TYPE Pair : STRUCT a, b : INT; END_STRUCT END_TYPE\n"
+                    "FUNCTION_BLOCK Base IMPLEMENTS IAny\nVAR n : INT := 4; calls : INT := 3; list : ARRAY[1..3] OF INT; END_VAR\n"
+                    "{attribute 'monitoring' := 'call'}\nPROPERTY Twice : INT\nGET\ncalls := calls + 1; list[1] := 7; Twice := n * 2;\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY Deep : INT\nGET\nDeep := Sum(calls);\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY Name : STRING\nGET\nName := 'me';\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY Both : Pair\nGET\nBoth.a := n; Both.b := calls;\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY Wrong : INT\nGET\nWrong := list[n];\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY Endless : INT\nGET\nWHILE n > 0 DO Endless := 1; END_WHILE\nEND_GET\nEND_PROPERTY\n"
+                    "PROPERTY First : REFERENCE TO INT\nGET\nFirst REF= list[1];\nEND_GET\nEND_PROPERTY\nEND_FUNCTION_BLOCK\n"
+                    "FUNCTION_BLOCK Derived EXTENDS Base\nVAR more : INT; END_VAR\n"
+                    "PROPERTY OVERRIDE Twice : INT\nGET\nTwice := SUPER^.Twice + 1000;\nEND_GET\nEND_PROPERTY\n"
+                    "METHOD Also\nmore := more + 1;\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+                    "PROGRAM Main\nVAR m : Base; d : ARRAY[0..2] OF Derived; at : REF_TO Base; i, none : IAny; r, scans : INT; END_VAR\n"
+                    "at := REF(d[1]);\ni := d[2];\nd[1].Also();\nr := at^.Twice + i.Twice;\nscans := scans + 1;\nEND_PROGRAM\n", encoding="utf-8")
+    path.write_text("lineshaft: 1\ntasks: {t: {every: 10 ms}}\nsources: properties.st\nblocks: {main: {type: Main, task: t}}\n"
+                    "run: {for: 0.1 s}\ntrace: {task: t, signals: [main.r, main.m.calls]}\n", encoding="utf-8")
+    at = {line: number for number, line in enumerate(text.read_text().splitlines(), 1)}
+    client = Client(lineshaft)
+    client.launch(path, {text: [{"line": at["scans := scans + 1;"], "condition": "m.Twice = 8 AND scans = 2"}]},
+                  args=["--trace", str(folder / "properties.csv")])
+    assert client.event("stopped")["reason"] == "breakpoint"
+    frame = client.stack()[0]["id"]
+    value, before = value_in(client, frame), client.request("lineshaft/state")["fingerprint"]
+    for watched, wanted in (("scans", "2"), ("m.Twice", "8"), ("m.Twice + m.calls", "11"), ("m.Deep", "6"), ("m.Name", "'me'"), ("LEN(m.Name)", "2"),
+                            ("m.Both.b", "3"), ("m.First", "0"), ("d[0].Twice", "1008"), ("at^.Twice", "1008"), ("i.Twice", "1008")):
+        assert value(watched) == wanted, (watched, value(watched))
+    refusals_of(value, ("m.Wrong", "GET of Base.Wrong ends with the fault array_bounds, at"), ("m.Endless", "the fault no_end"),
+                ("none.Twice", "'none' is to nothing"), ("m.None", "not known"), ("m.Also()", "changes nothing"))
+    of_m = client.inside(client.inside(client.scopes(frame)["Locals"])["m"]["variablesReference"])
+    shown = client.inside(of_m["Properties"]["variablesReference"])
+    assert {name: (v["value"], v["evaluateName"]) for name, v in shown.items()} == {"Twice": ("8", "m.Twice")}, shown
+    assert client.request("lineshaft/state")["fingerprint"] == before
+    client.breakpoints(text, at["more := more + 1;"])
+    client.step("continue")
+    value = value_in(client, client.stack()[0]["id"])
+    assert [value(each) for each in ("Twice", "THIS^.Twice", "SUPER^.Twice", "SUPER^.n")] == ["1008", "1008", "8", "4"]
+    client.breakpoints(text)
+    client.request("continue", threadId=1)
+    client.event("exited")
+    client.end()
+    assert traced("properties") == run(path)
+
+
+def test_watches_of_all_that_the_language_names():
+    """ARRAY[*] by its bounds, bytes of other values, characters, SIZEOF, addresses as the scan has them, WSTRING."""
+    text, path = folder / "named.st", folder / "named.yaml"
+    text.write_text("FUNCTION Total : INT\nVAR_IN_OUT ar : ARRAY[*] OF INT; two : ARRAY[*, *] OF INT; END_VAR\n"
+                    "Total := ar[LOWER_BOUND(ar, 1)] + two[2, 1];\nEND_FUNCTION\n"
+                    "PROGRAM Main\nVAR list : ARRAY[3..6] OF INT := [30, 40, 50, 60]; grid : ARRAY[1..2, 0..2] OF INT; motor, main : INT := 5;\n"
+                    "w : WORD := 16#1234; pb : POINTER TO BYTE; pi : POINTER TO INT; s : STRING(20) := 'abc'; wide : WSTRING(10) := \"a'$\"b\";\n"
+                    "word AT %MW10 : WORD; r, n : INT; END_VAR\n"
+                    "grid[2, 1] := 21; pb := ADR(w) + 1; pi := ADR(list[4]); word := word + 1;\nr := Total(list, grid);\nn := n + 1;\nEND_PROGRAM\n",
+                    encoding="utf-8")
+    path.write_text("lineshaft: 1\ntasks: {t: {every: 10 ms}}\ndialect: codesys\nsources: named.st\nblocks: {main: {type: Main, task: t}}\n"
+                    "run: {for: 0.1 s}\ntrace: {task: t, signals: [main.r, '%MW10']}\n", encoding="utf-8")
+    client = Client(lineshaft)
+    client.launch(path, {text: [3]})
+    client.event("stopped")
+    frame = client.stack()[0]["id"]
+    value, scopes = value_in(client, frame), client.scopes(frame)
+    assert [value(each) for each in ("ar[4]", "two[2, 1]", "two[2][1]", "ar[4] + 1")] == ["40", "21", "21", "41"]
+    refusals_of(value, ("ar[2]", "'2' is not an index from 3 to 6"))
+    given = client.inside(scopes["In and out"])
+    assert list(given) == ["ar", "two"] and given["ar"]["value"] == "ARRAY[3..6] OF INT" and given["ar"]["indexedVariables"] == 4, given
+    elements = client.inside(given["ar"]["variablesReference"])
+    assert {name: v["value"] for name, v in elements.items()} == {"[3]": "30", "[4]": "40", "[5]": "50", "[6]": "60"}
+    client.breakpoints(text, 11)
+    client.step("continue")
+    value = value_in(client, client.stack()[0]["id"])
+    for watched, wanted in (("pb^", "16#12"), ("pb[0]", "16#12"), ("pi^", "40"), ("pi[1]", "50"), ("s[0]", "16#61"), ("s[3]", "16#0"),
+                            ("SIZEOF(s)", "21"), ("SIZEOF(grid)", "12"), ("SIZEOF(INT)", "2"), ("wide", "\"a'$\"b\""), ("wide[1]", "16#27"),
+                            ("%MW10", "16#1"), ("%MB20", "16#1"), ("%MX20.0", "TRUE"), ("main", "5"), ("list", "ARRAY[3..6] OF INT")):
+        assert value(watched) == wanted, (watched, value(watched))
+    assert value("main.r") in ("0", "51"), value("main.r")  # the signal, though 'main' is a number here
+    refusals_of(value, ("pi[9]", "to nothing"), ("s[30]", "no such character"), ("%MW9999", "not in the memory"))
+    shown = client.inside(client.scopes(client.stack()[0]["id"])["Locals"])
+    assert [client.inside(shown[name]["variablesReference"])[part]["evaluateName"] for name, part in (("grid", "[1]"), ("pb", "^"))] == ["grid[1]", "pb^"]
+    client.end()
+
+
+def test_what_is_no_signal_is_changed():
+    """Texts and members of a UNION, as an assignment gives them a value, and what is shown before it counts."""
+    text, path = folder / "unions.st", folder / "unions.yaml"
+    text.write_text("TYPE Mode : (off, slow, fast); END_TYPE\nTYPE Pair : STRUCT low, high : WORD; END_STRUCT END_TYPE\n"
+                    "TYPE Bytes : UNION whole : DWORD; pair : Pair; each : ARRAY[0..3] OF BYTE; END_UNION END_TYPE\n"
+                    "FUNCTION_BLOCK Inner\nVAR name : STRING(5) := 'abc'; END_VAR\nname := name;\nEND_FUNCTION_BLOCK\n"
+                    "PROGRAM Main\nVAR u : Bytes; w : WSTRING(9); c : Inner; at : REF_TO INT; mode : Mode; n : INT; seen : INT; END_VAR\nVAR_TEMP t : STRING(9); END_VAR VAR CONSTANT fixed : STRING(9) := 'f'; END_VAR\n"
+                    "n := n + 1;\nc();\nseen := LEN(c.name);\nEND_PROGRAM\n", encoding="utf-8")
+    path.write_text("lineshaft: 1\ntasks: {t: {every: 10 ms}}\nsources: unions.st\nblocks: {main: {type: Main, task: t}}\n"
+                    "run: {for: 0.1 s}\ntrace: {task: t, signals: [main.seen, main.n]}\n", encoding="utf-8")
+    client = Client(lineshaft)
+    client.launch(path, {text: [12]}, args=["--trace", str(folder / "unions.csv")])
+    client.event("stopped")
+
+    def change(way, name, value):
+        """The answer, and what a watch shows before the next scan."""
+        reference = client.scopes(client.stack()[0]["id"])[way[0]]
+        for step in way[1:]:
+            reference = client.inside(reference)[step]["variablesReference"]
+        name_of = client.inside(reference)[name]["evaluateName"].removeprefix("main.")
+        answer = client.request("setVariable", variablesReference=reference, name=name, value=value)["value"]
+        assert answer == client.request("evaluate", expression=name_of, frameId=client.stack()[0]["id"])["result"], answer
+        return answer
+
+    assert change(["Locals", "u", "pair"], "high", "16#1234") == "16#0 (16#1234 from the next instant on)"
+    assert change(["Locals", "u", "each"], "[0]", "255") == "16#0 (16#FF from the next instant on)"
+    assert change(["Locals"], "w", '"it"') == '"" ("it" from the next instant on)'
+    assert change(["Locals", "c", "Locals"], "name", "'four'") == "'abc' ('four' from the next instant on)"
+    assert change(["Locals"], "mode", "2") == "Mode#off (fast from the next instant on)"
+    for way, name, value, wanted in ((["Locals"], "mode", "3", "not a value"), (["Temporaries"], "t", "'a'", "no place that lasts"),
+                                     (["Locals", "c", "Locals"], "name", "'too long'", "too long"), (["Locals", "u"], "pair", "1", "part by part"),
+                                     (["Locals", "u"], "whole", "'a'", "DWORD"),
+                                     (["Locals"], "fixed", "'a'", "nothing that can be set"), (["Locals"], "at", "NULL", "refers to something")):
+        try:
+            raise AssertionError(change(way, name, value))
+        except Refused as why:
+            assert wanted in str(why), (name, why)
+    client.step("continue")
+    value = value_in(client, client.stack()[0]["id"])
+    assert [value(each) for each in ("u.whole", "w", "c.name", "mode")] == ["16#123400FF", '"it"', "'four'", "Mode#fast"]
+    client.step("reverseContinue")
+    assert value_in(client, client.stack()[0]["id"])("c.name") == "'abc'"
+    client.breakpoints(text)
+    client.request("continue", threadId=1)
+    client.event("exited")
+    client.end()
+    rows = (folder / "unions.csv").read_text().splitlines()[1:]
+    assert [row.split(",")[2] for row in rows[:3]] == ["3", "4", "4"], rows[:3]
+    client = Client(lineshaft)
+    client.launch(path, {text: [12]}, args=["--record", str(folder / "none.yaml")])
+    client.event("stopped")
+    try:
+        raise AssertionError(change(["Locals"], "w", '"it"'))
+    except Refused as why:
+        assert "leave --record out" in str(why), why
+    client.end()
 
 
 def test_suites():

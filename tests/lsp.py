@@ -586,6 +586,17 @@ def values_of_enumerations_are_shown_renamed_and_offered():
     assert on.client.diagnosed(path) == []
     labels = {i["label"] for i in on.answer("completion", "lamps.yaml", "Bright")["result"]["items"]}
     assert labels >= {"Dark", "Bright", "Both"}, labels
+    path.write_text(path.read_text().replace("blocks:\n", "inputs: {mode: Dark}\nblocks:\n").replace("wanted: Both", "wanted: inputs.mode")
+                    .replace("set: {first.wanted: Bright}", "set: {inputs.mode: Dark}").replace("first.mode: Bright", "first.mode: Dark"))
+    on.client.open(path)
+    on.client.change(path, path.read_text())
+    assert on.client.diagnosed(path) == []
+    for at in ("Dark}\nblocks", "Dark}}]"):
+        whole = on.client.texts[str(path)]
+        before = whole[:whole.index(at)]
+        place = {"line": before.count("\n"), "character": len(before) - before.rfind("\n") - 1}
+        found = on.client.answer("textDocument/completion", {"textDocument": {"uri": uri_of(path)}, "position": place})["result"]["items"]
+        assert {i["label"] for i in found} == {"Dark", "Bright", "Both"}, (at, found)
     on.end()
 
 

@@ -157,6 +157,7 @@ class Adapter final : Front {
         stands_ = false;
         frames_.clear();
         kept_.clear();
+        coming_.clear();
     }
 
     void look() override {
@@ -223,20 +224,7 @@ class Adapter final : Front {
     }
 
     Json set_function_breakpoints(const Json& arguments) {
-        std::vector<std::string> texts;
-        for (const Json& each : arguments.value("breakpoints", Json::array())) {
-            const bool has_more =
-                !(text_in(each, "condition") + text_in(each, "hitCondition")).empty();
-            texts.push_back(has_more ? "" : text_in(each, "name"));
-        }
-        Json all = Json::array();
-        for (std::string error : session().signals().set(texts)) {
-            if (texts[all.size()].empty())
-                error = "the name is the condition, and counts nothing: motor.speed > 20 mm/s";
-            all.push_back({{"verified", error.empty()}});
-            if (!error.empty()) all.back()["message"] = error;
-        }
-        return {{"breakpoints", all}};
+        return debug::set_function_breakpoints(arguments, session().signals());
     }
 
     Json data_breakpoint_info(const Json& arguments) {
@@ -260,15 +248,17 @@ class Adapter final : Front {
     /// A signal by its name, or an expression of Structured Text as the frame sees it.
     Shown watched(const Json& arguments, const std::string& text) {
         const Signal* signal = standing().loaded().linked.machine.find(text);
-        if (signal) return show_signal(launched_->loaded.linked.machine, *signal);
         const auto number = static_cast<std::size_t>(number_in(arguments, "frameId", 1));
-        if (frames().empty() || number == 0 || number > frames_.size())
+        const bool has_frame = !frames().empty() && number > 0 && number <= frames_.size();
+        if (signal && !(has_frame && frames_[number - 1].sees(text)))
+            return show_signal(launched_->loaded.linked.machine, *signal);
+        if (!has_frame)
             throw Refused(fmt::format("there is no signal '{}', and no routine runs here", text));
         const Frame& frame = frames_[number - 1];
-        const Evaluated value =
-            Expression(text, *frame.mark.file).value(frame, session_->made()->checked);
-        if (!value.error.empty()) throw Refused(value.error);
-        return value.shown;
+        const Evaluated value = Expression(text, *frame.mark.file).value(frame);
+        if (value.error.empty()) return value.shown;
+        if (!signal) throw Refused(value.error);
+        return show_signal(launched_->loaded.linked.machine, *signal);
     }
 
     Shown variable_in(const Json& arguments) {
@@ -284,15 +274,27 @@ class Adapter final : Front {
         const Shown shown = variable_in(arguments);
         const std::string value = text_in(arguments, "value");
         const std::string signal = signal_of(session.loaded().linked, shown);
-        if (signal.empty())
+        if (signal.empty()) {
+            coming_[name_for_watch(shown)] = write(shown, value);
+        } else {
+            Diagnostics out;
+            const std::string text = session.change(signal, value, out);
+            if (!out.empty()) throw Refused(out.list().front().message);
+            coming_[signal] = text;
+        }
+        return {{"value", to_json(variable_in(arguments))["value"]}};
+    }
+
+    /// A variable of Structured Text that is no signal. Gives the value as it is shown then.
+    std::string write(const Shown& shown, const std::string& value) {
+        if (!launched_->record.empty())
             throw Refused(
-                fmt::format("'{}' is no signal of the program, which alone can be set from "
-                            "outside",
+                fmt::format("'{}' is no signal, so a recording cannot have it: leave "
+                            "--record out",
                             shown.name));
-        Diagnostics out;
-        session.change(signal, value, out);
-        if (!out.empty()) throw Refused(out.list().front().message);
-        return {{"value", value}};
+        const Written written = write_by_hand(shown, value, frames(), session_->data());
+        session_->change(name_for_watch(shown), written.write);
+        return written.text;
     }
 
     int task_in(const Json& arguments) {
@@ -420,9 +422,14 @@ class Adapter final : Front {
     }
 
     Json to_json(const Shown& shown) {
-        Json variable{{"name", shown.name}, {"value", shown.value}};
-        if (!shown.type.empty()) variable["type"] = shown.type;
         const std::string name = name_for_watch(shown);
+        const auto coming = coming_.find(name);
+        const bool comes = coming != coming_.end() && coming->second != shown.value;
+        Json variable{{"name", shown.name},
+                      {"value", shown.value + (comes ? fmt::format(" ({} from the next instant on)",
+                                                                   coming->second)
+                                                     : "")}};
+        if (!shown.type.empty()) variable["type"] = shown.type;
         if (!name.empty()) variable["evaluateName"] = name;
         variable["variablesReference"] = keep(shown);
         if (shown.elements > 0) variable["indexedVariables"] = shown.elements;
@@ -480,6 +487,8 @@ class Adapter final : Front {
     int exit_code_ = 0;
     std::vector<Frame> frames_;  ///< that run; their numbers are those of the protocol, less 1
     std::vector<Shown> kept_;    ///< by reference, less 1
+    /// What was set by hand and counts from the next instant on, by its signal or its watch.
+    std::map<std::string, std::string> coming_;
 };
 
 }  // namespace

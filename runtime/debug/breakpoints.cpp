@@ -86,12 +86,12 @@ bool HitCount::holds(std::int64_t count) const {
     return true;
 }
 
-std::string Breakpoint::logged(const Frame& frame, const st::Checked& checked) const {
+std::string Breakpoint::logged(const Frame& frame) const {
     std::string text;
     for (const auto& [before, expression] : log) {
         text += before;
         if (!expression) continue;
-        const Evaluated value = expression->value(frame, checked);
+        const Evaluated value = expression->value(frame);
         text += value.error.empty() ? value.shown.value : "<" + value.error + ">";
     }
     return text + "\n";

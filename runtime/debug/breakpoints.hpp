@@ -41,7 +41,7 @@ struct Breakpoint {
     /// Text, and what is put in behind it; or null.
     std::vector<std::pair<std::string, std::shared_ptr<const Expression>>> log = {};
 
-    std::string logged(const Frame& frame, const st::Checked& checked) const;
+    std::string logged(const Frame& frame) const;
 };
 
 /// Breakpoints at lines of Structured Text.

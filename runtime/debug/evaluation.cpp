@@ -1,15 +1,19 @@
 #include "runtime/debug/evaluation.hpp"
 
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "runtime/debug/packed_values.hpp"
+#include "runtime/debug/properties.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/library/compiled.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/syntax/parser.hpp"
@@ -65,9 +69,9 @@ Operand load(const Seat& seat, const std::string& unit) {
 /// constants, with the machine that scans.
 class Reckoning {
   public:
-    Reckoning(st::Tree& tree, const Frame& frame, const st::Checked& checked)
-        : frame_(frame), checked_(checked), c_{tree, nothing_, st::evaluate, wrong_} {
-        for (const st::Type& type : checked.types) {
+    Reckoning(st::Tree& tree, const Frame& frame)
+        : frame_(frame), checked_(frame.made->checked), c_{tree, nothing_, st::evaluate, wrong_} {
+        for (const st::Type& type : checked_.types) {
             if (!type.has_values() || type.name.empty()) continue;
             c_.users.types.emplace(type.name, st::NamedType{&declared_, &type});
             for (std::size_t i = 0; i < type.values.size(); ++i) {
@@ -83,6 +87,14 @@ class Reckoning {
             if (Operand found = place(e); found.name.empty()) return found;
         st::Expression* made = reckoned(e, nullptr);
         return {.seat = {made->type, nullptr, &frame_}, .value = made->constant};
+    }
+
+    /// What an assignment to a variable of that type gives it.
+    st::Constant value_for(const st::Expression& e, const st::Type& type) {
+        st::Expression* made = with_values(e);
+        if (!st::check(c_, made, &type) || !st::coerce(c_, made, type) || !st::evaluate(c_, made))
+            throw Failed(wrong_.empty() ? unknown(e) : wrong_.list().front().message);
+        return made->constant;
     }
 
   private:
@@ -118,6 +130,7 @@ class Reckoning {
             if (e.operands[0]->kind != E::name || std::ranges::any_of(checked_.routines, is_called))
                 throw Failed(fmt::format("'{}' is not for a debugger, which changes nothing",
                                          e.place.text()));
+            if (const auto size = size_of(e)) return size;
             for (st::Argument& argument : made->arguments)
                 argument.value = with_values(*argument.value);
             return made;
@@ -132,6 +145,16 @@ class Reckoning {
         }
         if (e.operands[1]) made->operands[1] = with_values(*e.operands[1]);
         return made;
+    }
+
+    /// `SIZEOF(x)` of a variable; null: it is something else.
+    st::Expression* size_of(const st::Expression& call) {
+        const bool is_size = st::same_name(call.operands[0]->token.text, "sizeof") &&
+                             call.arguments.size() == 1 && is_place(*call.arguments[0].value);
+        const Operand of = is_size ? place(*call.arguments[0].value) : Operand{.name = "-"};
+        if (!of.name.empty()) return nullptr;
+        const Wide bytes = st::bytes_of(*of.seat.type);
+        return st::make_constant(c_, call, st::any_integer_type, {.integer = bytes});
     }
 
     Operand place(const st::Expression& e) {
@@ -158,6 +181,8 @@ class Reckoning {
         for (const st::Routine* routine = frame_.routine; routine; routine = routine->owner) {
             block = routine;
             const st::Variable* found = st::find_in(routine->names, name);
+            if (!found && st::find_in(routine->getters, name))
+                return property({routine->type, frame_.base, &frame_}, e);
             if (!found) continue;
             if (found->space == st::Space::constant)
                 return {.seat = {found->type, nullptr, &frame_},
@@ -165,8 +190,11 @@ class Reckoning {
                         .unit = found->unit};
             return at(seat_of(*found, frame_.base, frame_), e, found->unit);
         }
+        if (name.starts_with('%')) return addressed(e);
         if (st::same_name(name, "this") && block && block->type)
             return load({block->type, frame_.base, &frame_}, "");
+        if (is_super(e) && block && block->base)
+            return load({block->base->type, frame_.base, &frame_}, "");
         if (const st::Variable* global = global_of("", name))
             return at(seat_of(*global, frame_.base, frame_), e, global->unit);
         for (std::size_t i = 0; i < checked_.globals.size(); ++i)
@@ -174,6 +202,32 @@ class Reckoning {
                 data.pou && st::same_name(data.name, name))
                 return load({data.type, global_at(static_cast<int>(i), frame_), &frame_}, "");
         return {.name = std::string(name)};
+    }
+
+    /// `SUPER` or `SUPER^`
+    static bool is_super(const st::Expression& e) {
+        return e.kind == E::deref ? is_super(*e.operands[0])
+                                  : e.kind == E::name && st::same_name(e.token.text, "super");
+    }
+
+    /// What GET gives; the instance says which one, but not behind SUPER.
+    Operand property(const Seat& of, const st::Expression& e) const {
+        const bool is_of_base = e.kind == E::member && is_super(*e.operands[0]);
+        const Seat there = is_of_base ? of : instance_at(of);
+        if (!there.at) throw Failed(fmt::format("'{}' is to nothing", e.operands[0]->place.text()));
+        const st::Routine* getter = st::find_in(there.type->routine->getters, e.token.text);
+        if (!getter) throw Failed(unknown(e));
+        const Got got = get(there, *getter);
+        if (!got.error.empty()) throw Failed(got.error);
+        return at(got.seat, e, getter->result->unit);
+    }
+
+    /// `%MW10`, as the scan has it now.
+    Operand addressed(const st::Expression& e) const {
+        const auto address = read_address(e.token.text, checked_.image.count);
+        if (!address) throw Failed(unknown(e));
+        const st::Type& type = address->bits == 1 ? st::bool_type : st::bits_type(address->bits);
+        return at(seat_in_image(*address, type, frame_), e, "");
     }
 
     /// Names and numbers are those of the enumeration.
@@ -260,12 +314,38 @@ class Reckoning {
 
     Operand followed(const st::Expression& e, const Operand& reference) const {
         const st::Type* type = reference.seat.type;
-        if (type && type->kind == st::Type::Kind::block) return reference;  // THIS^
+        const bool is_array = reference.seat.made && type->kind == st::Type::Kind::array;
+        if (is_array || (type && type->kind == st::Type::Kind::block)) return reference;  // THIS^
         if (!type || !type->is_reference())
             throw Failed(fmt::format("'{}' is no pointer", e.operands[0]->place.text()));
-        const Seat target = target_of(reference.seat);
+        return pointed_to(e, reference, 0);
+    }
+
+    /// What is so many bytes behind what it is to.
+    static Operand pointed_to(const st::Expression& e, const Operand& reference, Wide bytes) {
+        const Seat target = target_of(reference.seat, static_cast<std::int64_t>(bytes));
         if (!target.at) throw Failed(fmt::format("'{}' is to nothing", e.place.text()));
         return load(target, "");
+    }
+
+    /// `s[3]`, by the language of the source.
+    Operand character(const st::Expression& e, const Operand& text, Wide index) const {
+        const st::Type& type = *text.seat.type;
+        const st::Dialect& dialect = e.place.dialect();
+        const auto place = static_cast<std::int64_t>(index);
+        const std::uint32_t room =
+            type.is_open ? static_cast<std::uint32_t>(text.value.text.size()) : type.room();
+        const auto found =
+            dialect.texts_are_bytes
+                ? st::meaning::byte_of_text(text.seat.at, place, room)
+                : st::meaning::character_of(
+                      text.seat.at, place,
+                      room | (dialect.characters_may_be_missing ? st::meaning::of_s7 : 0));
+        if (!found) throw Failed(fmt::format("'{}' has no such character", e.place.text()));
+        const st::Type& of = dialect.texts_are_bytes ? st::bits_type(type.is_wide ? 16 : 8)
+                             : type.is_wide          ? st::wide_char_type
+                                                     : st::char_type;
+        return {.seat = {&of, nullptr, &frame_}, .value = {.integer = Wide{*found}}};
     }
 
     Operand bit(const st::Expression& e) {
@@ -288,10 +368,12 @@ class Reckoning {
             const std::string full = fmt::format("{}.{}", whole.name, e.token.text);
             return signal(full).value_or(Operand{.name = full});
         }
-        if (whole.seat.type->kind == st::Type::Kind::handle) return field(whole, e);
-        if (whole.is_value()) return {.name = std::string(e.place.text())};
         const st::Type& type = *whole.seat.type;
+        if (type.kind == st::Type::Kind::handle) return field(whole, e);
+        if (type.kind == st::Type::Kind::interface) return property(whole.seat, e);
+        if (whole.is_value()) return {.name = std::string(e.place.text())};
         const st::Variable* part = st::find_member(type, e.token.text);
+        if (!part && type.kind == st::Type::Kind::block) return property(whole.seat, e);
         if (!part) throw Failed(unknown(e));
         if (part->is_byte)
             return {.seat = {part->type, nullptr, &frame_},
@@ -304,10 +386,18 @@ class Reckoning {
         if (!whole.name.empty())
             if (auto found = signal(e.place.text())) return *found;
         for (const st::Argument& argument : e.arguments) {
-            if (!whole.name.empty() || whole.seat.type->kind != st::Type::Kind::array)
-                throw Failed(unknown(e));
+            if (!whole.name.empty()) throw Failed(unknown(e));
             const st::Type& array = *whole.seat.type;
             const Wide index = reckoned(*argument.value, &st::dint_type)->constant.integer;
+            if (array.is_pointer() && array.element) {
+                whole = pointed_to(e, whole, index * Wide{st::bytes_of(*array.element)});
+                continue;
+            }
+            if (array.kind == st::Type::Kind::text && whole.seat.at) {
+                whole = character(e, whole, index);
+                continue;
+            }
+            if (array.kind != st::Type::Kind::array) throw Failed(unknown(e));
             if (index < array.lower || index > array.upper)
                 throw Failed(fmt::format("'{}' is not an index from {} to {}",
                                          argument.value->place.text(), array.lower, array.upper));
@@ -330,13 +420,17 @@ class Reckoning {
     st::Checking c_;
 };
 
+std::uint64_t bits_of(const st::Type& type, const st::Constant& value) {
+    return type.is_real() ? std::bit_cast<std::uint64_t>(value.real)
+                          : static_cast<std::uint64_t>(value.integer);
+}
+
 Shown show_operand(const std::string& text, const Operand& found) {
     const st::Type& type = *found.seat.type;
     if (found.seat.at) return show(text, found.seat, found.unit);
     if (type.kind == st::Type::Kind::text)
-        return {.name = text, .value = st::text_literal(found.value.text), .type = type.name};
-    const std::uint64_t bits = type.is_real() ? std::bit_cast<std::uint64_t>(found.value.real)
-                                              : static_cast<std::uint64_t>(found.value.integer);
+        return {.name = text, .value = text_shown(type, found.value.text), .type = type.name};
+    const std::uint64_t bits = bits_of(type, found.value);
     return {.name = text, .value = st::value_text(type, bits), .type = type.name};
 }
 
@@ -362,11 +456,11 @@ Expression::Expression(std::string text, const SourceFile& like)
 Expression::~Expression() = default;
 Expression::Expression(Expression&&) noexcept = default;
 
-Evaluated Expression::value(const Frame& frame, const st::Checked& checked) const {
+Evaluated Expression::value(const Frame& frame) const {
     if (!error_.empty()) return {error_};
     try {
         st::Tree tree;
-        const Operand found = Reckoning(tree, frame, checked).value(*parsed_->root);
+        const Operand found = Reckoning(tree, frame).value(*parsed_->root);
         Evaluated evaluated{.shown = show_operand(text_, found)};
         evaluated.shown.expression = text_;
         if (found.seat.type->kind == st::Type::Kind::boolean)
@@ -374,6 +468,29 @@ Evaluated Expression::value(const Frame& frame, const st::Checked& checked) cons
         return evaluated;
     } catch (const Failed& why) {
         return {why.what()};
+    }
+}
+
+std::vector<std::byte> Expression::value_for(const st::Type& type, const Frame& frame,
+                                             std::string& error) const {
+    error = error_;
+    if (!error.empty()) return {};
+    std::vector<std::byte> bytes(8);
+    try {
+        st::Tree tree;
+        const st::Constant value = Reckoning(tree, frame).value_for(*parsed_->root, type);
+        const std::size_t size = value.text.size();
+        const bool is_text = type.kind == st::Type::Kind::text;
+        if (is_text && st::kept_bytes(value.text, type.room()) < size)
+            throw Failed(fmt::format("{} is too long for {}", text_, type.name));
+        const std::uint64_t first = is_text ? size : bits_of(type, value);
+        std::memcpy(bytes.data(), &first, sizeof first);
+        const auto* const text = reinterpret_cast<const std::byte*>(value.text.data());
+        if (is_text) bytes.insert(bytes.end(), text, text + size);
+        return bytes;
+    } catch (const Failed& why) {
+        error = why.what();
+        return {};
     }
 }
 

@@ -17,7 +17,8 @@ struct Evaluated {
 
 /// An expression of Structured Text that somebody watches: variables that a routine sees, their
 /// parts, signals of the program, constants, operators and functions of the standard, as the
-/// program reckons with them. It calls nothing else, so it changes nothing.
+/// program reckons with them; of what is the user's it calls GET of a PROPERTY, on a copy. So it
+/// changes nothing.
 class Expression {
   public:
     /// As in that file.
@@ -27,7 +28,10 @@ class Expression {
 
     const std::string& error() const { return error_; }
     /// The frame outlives what is shown.
-    Evaluated value(const Frame& frame, const st::Checked& checked) const;
+    Evaluated value(const Frame& frame) const;
+    /// As a variable of that type has it when it is assigned; empty with `error`, if it cannot be.
+    std::vector<std::byte> value_for(const st::Type& type, const Frame& frame,
+                                     std::string& error) const;
 
   private:
     struct Parsed;

@@ -29,9 +29,9 @@ Frame frame_at(const st::Halt& halt, const st::Library::Made& made, const Machin
             .base = st::place_of(base, halt.root, halt.context),
             .root = halt.root,
             .context = &halt.context,
-            .code = &halt.code,
+            .now = &halt.now,
+            .made = &made,
             .machine = &machine,
-            .image = &made.checked.image,
             .of = &made.generated.code.routines[static_cast<std::size_t>(number)]};
 }
 
@@ -113,6 +113,13 @@ std::byte* Frame::seen(std::byte* at) const {
         }
     }
     return at;
+}
+
+bool Frame::sees(std::string_view expression) const {
+    const std::string_view first = expression.substr(0, expression.find_first_of(".[^"));
+    for (const st::Routine* scope = routine; scope; scope = scope->owner)
+        if (st::find_in(scope->names, first)) return true;
+    return first.starts_with('%');
 }
 
 FailedScan::FailedScan(Machine& machine, const st::Library::Made& made, const BlockPlace& block,

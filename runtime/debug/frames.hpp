@@ -16,16 +16,19 @@ struct Frame {
     std::byte* base = nullptr;         ///< its first slot
     std::byte* root = nullptr;         ///< of the instance that is scanned
     const Context* context = nullptr;  ///< of that
-    const st::Code* code = nullptr;
+    const Scan* now = nullptr;         ///< likewise
+    const st::Library::Made* made = nullptr;
     const Machine* machine = nullptr;
-    const st::Image* image = nullptr;  ///< the process image that sources see
-    const Frame* outer = nullptr;      ///< that called it; null: none, or not looked for
+    const Frame* outer = nullptr;  ///< that called it; null: none, or not looked for
     const st::CodeRoutine* of = nullptr;
     /// What a later call on its instance has put aside of its variables; null: nothing.
     std::byte* aside = nullptr;
 
     /// Where what it has at that place stands while later calls run.
     std::byte* seen(std::byte* at) const;
+
+    /// What an expression begins with is a variable of the routine or of its block, or an address.
+    bool sees(std::string_view expression) const;
 };
 
 /// A scan that a fault has ended, as if it stood where that happened.

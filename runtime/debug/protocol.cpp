@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/debug/packed_values.hpp"
+
 namespace lineshaft::debug {
 
 Json capabilities() {
@@ -55,6 +57,47 @@ Json data_as_json(const std::string& variable, const std::string& name, const st
                 {"accessTypes", {"write"}}};
     const std::string why = fmt::format("'{}' has no place that lasts from scan to scan", variable);
     return {{"dataId", nullptr}, {"description", why}};
+}
+
+Written write_by_hand(const Shown& shown, const std::string& value,
+                      const std::vector<Frame>& frames, const DataBreakpoints& lasting) {
+    const auto why_not = [&](const char* why) {
+        return Refused(fmt::format("'{}' {}", shown.name, why));
+    };
+    if (!shown.seat || frames.empty()) throw why_not("is nothing that can be set");
+    const Seat& seat = *shown.seat;
+    using Kind = st::Type::Kind;
+    if (seat.type->kind == Kind::handle || seat.type->kind == Kind::interface ||
+        seat.type->is_reference())
+        throw why_not("refers to something, which is not for a debugger to choose");
+    if (!seat.type->is_scalar() && seat.type->kind != Kind::text)
+        throw why_not("is no value: what it has is set part by part");
+    const Shown place{
+        .name = {}, .value = {}, .at = seat.packed.type ? seat.packed.bytes : shown.at, .bytes = 1};
+    if (lasting.id_of(place, frames).empty())
+        throw why_not("has no place that lasts from scan to scan");
+    std::string error;
+    const Frame& frame = frames.front();
+    auto bytes = Expression(value, *frame.mark.file).value_for(*seat.type, frame, error);
+    if (!error.empty()) throw Refused(error);
+    std::string text = show("", {seat.type, bytes.data(), &frame}).value;
+    return {std::move(text), writing(seat, std::move(bytes))};
+}
+
+Json set_function_breakpoints(const Json& arguments, SignalConditions& signals) {
+    std::vector<std::string> texts;
+    for (const Json& each : list_in(arguments, "breakpoints")) {
+        const bool has_more = !(text_in(each, "condition") + text_in(each, "hitCondition")).empty();
+        texts.push_back(has_more ? "" : text_in(each, "name"));
+    }
+    Json all = Json::array();
+    for (std::string error : signals.set(texts)) {
+        if (texts[all.size()].empty())
+            error = "the name is the condition, and counts nothing: motor.speed > 20 mm/s";
+        all.push_back({{"verified", error.empty()}});
+        if (!error.empty()) all.back()["message"] = error;
+    }
+    return {{"breakpoints", all}};
 }
 
 Json set_data_breakpoints(const Json& arguments, DataBreakpoints& data) {

@@ -172,12 +172,23 @@ RunReport Session::repeat(RunOptions how) {
     return lineshaft::run(loaded_, how);
 }
 
-void Session::change(const std::string& signal, const std::string& value, Diagnostics& out) {
+std::string Session::change(const std::string& signal, const std::string& value, Diagnostics& out) {
     Desk desk(loaded_);
     const auto kind = desk.is_settable(signal) ? Change::Kind::set : Change::Kind::force;
     auto made = desk.changes(kind, {{signal, value}}, out);
-    if (!out.empty() || made.empty()) return;
-    wanted_changes_.push_back({.change = std::move(made.front())});
+    if (!out.empty() || made.empty()) return {};
+    std::string text = made.front().text;
+    want({.change = std::move(made.front())});
+    return text;
+}
+
+void Session::change(const std::string& variable, std::function<void()> write) {
+    want({.change = {.kind = Change::Kind::set, .name = variable, .text = {}},
+          .write = std::move(write)});
+}
+
+void Session::want(HandChange wanted) {
+    wanted_changes_.push_back(std::move(wanted));
     if (!halt_) post_due();
 }
 
@@ -192,7 +203,8 @@ void Session::post_due() {
         history_.forget_after(executive_->time());
         changes_.push_back(std::move(wanted));
         apply(changes_[next_change_++]);
-        front_.log("recorded: " + text_of(changes_.back()));
+        front_.log(changes_.back().write ? "not recorded: " + changes_.back().change.name + "\n"
+                                         : "recorded: " + text_of(changes_.back()));
     }
     wanted_changes_.clear();
     while (next_change_ < changes_.size() && changes_[next_change_].at <= executive_->time() + 1)
@@ -200,6 +212,7 @@ void Session::post_due() {
 }
 
 void Session::apply(const HandChange& made) {
+    if (made.write) return made.write();
     if (made.change.kind == Change::Kind::set) {
         executive_->post(made.change.stimulus);
         return;
@@ -210,6 +223,7 @@ void Session::apply(const HandChange& made) {
 }
 
 std::string Session::text_of(const HandChange& made) {
+    if (made.write) return {};
     std::string text = recorded(made.at, {&made.change, 1});
     if (made.until == never) return text;
     Change end{.kind = Change::Kind::lift_force, .name = made.change.name, .text = {}};

@@ -86,14 +86,12 @@ bool Session::play(Executive& executive) {
             failed_.reset();
             post_due();
         } else if (!goes_on || executive.time() >= end_of_run()) {
-            here_ = {instant_};
+            here_ = {executive.time()};
             if (stop_at_end) stand({"exit", "the end of the run"}, nullptr);
             if (!jump_) break;
         } else {
             attach();
             goes_on = run_freely(end_of_run(), false);
-            if (std::exchange(pausing_, false) && !jump_ && !ending_ && !between_)
-                between_ = Stop{"pause"};
         }
     }
     executive.remove(*this);
@@ -108,7 +106,7 @@ bool Session::play(Executive& executive) {
 void Session::begin(Executive& executive) {
     executive_ = &executive;
     quiet_ = false;
-    executive.add(*this);
+    attach();
 }
 
 /// A piece of the way, as long as a look at the front may wait. False at the end of the run.
@@ -127,9 +125,10 @@ bool Session::run_freely(std::int64_t limit, bool is_quiet) {
 
 /// Who runs without a stop in it runs as without a debugger.
 void Session::attach() {
-    if (!made_) return;
     const bool is_wanted = plan_ || goal_ || search_ || !breakpoints_.empty() || !data_.empty();
-    made_->generated.code.probe = is_wanted ? looking_.get() : nullptr;
+    if (made_) made_->generated.code.probe = is_wanted ? looking_.get() : nullptr;
+    executive_->remove(*this);
+    if (is_wanted || pausing_ || !signals_.empty()) executive_->add(*this);
 }
 
 bool Session::steps(const st::CodeRoutine& routine, const Scan& now) {
@@ -203,7 +202,7 @@ bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
     const Frame frame = innermost(halt, *made_, machine_);
     for (const Breakpoint* breakpoint : here) {
         if (breakpoint->condition) {
-            const Evaluated value = breakpoint->condition->value(frame, made_->checked);
+            const Evaluated value = breakpoint->condition->value(frame);
             if (!value.truth.value_or(true)) continue;
             if (!value.truth) stop.text = breakpoint->wanted.condition + ": " + value.error;
         }
@@ -214,7 +213,7 @@ bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
             stop.breakpoints.push_back(breakpoint->id);
             stop.reason = "breakpoint";
         } else if (tells) {
-            front_.log(breakpoint->logged(frame, made_->checked));
+            front_.log(breakpoint->logged(frame));
         }
     }
     return !stop.breakpoints.empty();
@@ -271,6 +270,8 @@ void Session::settled(std::int64_t time, std::int64_t) {
         between_ = std::move(why);
     else if (plan_ && task >= 0 && plan_->command.task == task)
         between_ = Stop{.reason = "step", .task = task};
+    else if (std::exchange(pausing_, false))
+        between_ = Stop{"pause"};
     if (between_) executive_->hold();
 }
 
@@ -278,6 +279,7 @@ void Session::happened(const RunEvent& event) {
     if (quiet_ || search_ || goal_ || recounts_) return;
     front_.happened(event);
     if (!stop_on_error || event.kind != EventKind::block_error) return;
+    instant_ = event.time;
     between_ = Stop{"exception", event.text, std::max(event.task, 0)};
     executive_->hold();
 }

@@ -72,7 +72,8 @@ class Front {
 /// A value that was changed by hand.
 struct HandChange {
     std::int64_t at = 0, until = never;  ///< of a force, when it ends [ns]
-    Change change;
+    Change change;                       ///< of a signal
+    std::function<void()> write = {};    ///< of a variable that is none; else none
 };
 
 /// One program under the debugger: runs it forwards as `lineshaft run` does, looks at it from
@@ -98,8 +99,10 @@ class Session final : Observer, EventSink {
 
     /// A value of a signal, as a program would have it: an input keeps it, any other signal has it
     /// for one scan of its task. It counts from the next instant on, and what was to come after
-    /// that is forgotten. What is wrong goes to `out`.
-    void change(const std::string& signal, const std::string& value, Diagnostics& out);
+    /// that is forgotten. What is wrong goes to `out`. Gives the value as it is shown then.
+    std::string change(const std::string& signal, const std::string& value, Diagnostics& out);
+    /// Of what is no signal likewise, but a recording does not have it.
+    void change(const std::string& variable, std::function<void()> write);
 
     /// What was changed by hand, for `lineshaft run --recording`; empty: nothing was.
     std::string recording() const;
@@ -162,6 +165,7 @@ class Session final : Observer, EventSink {
     void stand(Stop stop, const st::Halt* halt);
     void find_failed(int task);
     void obey(const st::Halt* halt);
+    void want(HandChange wanted);
     void post_due();
     void apply(const HandChange& made);
     static std::string text_of(const HandChange& made);

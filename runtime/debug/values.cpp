@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "runtime/debug/packed_values.hpp"
+#include "runtime/debug/properties.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/value_text.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 
 using st::Section;
 using Kind = st::Type::Kind;
-using List = std::vector<Shown>;
 
 std::string with_unit(std::string value, const std::string& unit) {
     return unit.empty() ? value : value + " " + unit;
@@ -39,7 +39,15 @@ Shown show_variable(const st::Variable& variable, std::byte* base, const Frame& 
     }
     const Seat seat = seat_of(variable, base, frame);
     if (!seat.at) return {.name = name, .value = "not in the machine's memory"};
-    return show(name, seat, variable.unit);
+    Shown shown = show(name, seat, variable.unit);
+    if (variable.constant) shown.seat = nullptr;
+    return shown;
+}
+
+/// An ARRAY[*] is passed on as where it is.
+Section section_of(const st::Variable& variable) {
+    const bool is_given = variable.section == Section::input && variable.type->is_open_array();
+    return is_given ? Section::in_out : variable.section;
 }
 
 /// The groups of a block's or a routine's variables that have any.
@@ -52,11 +60,17 @@ List groups_of(const st::Routine& routine, std::byte* base, const Frame& frame) 
     for (const auto& [name, sections] : groups) {
         List of_group;
         for (const st::Variable* variable : st::all_variables(routine))
-            if (variable->type && !variable->text.empty() &&
-                std::ranges::find(sections, variable->section) != sections.end())
+            if (variable->type && !variable->text.empty() && !variable->bound_of &&
+                std::ranges::find(sections, section_of(*variable)) != sections.end())
                 of_group.push_back(show_variable(*variable, base, frame));
         if (!of_group.empty()) shown.push_back(group(name, std::move(of_group)));
     }
+    const auto is_monitored = [](const auto& getter) { return getter.second->pou->is_monitored; };
+    if (std::ranges::any_of(routine.getters, is_monitored))
+        shown.push_back(
+            {.name = "Properties", .value = "", .inside = [&routine, base, &frame](auto, auto) {
+                 return properties_of({routine.type, base, &frame});
+             }});
     return shown;
 }
 
@@ -157,25 +171,67 @@ std::string text_of(const Seat& seat) {
         case Kind::union_:
         case Kind::block:
         case Kind::standard:
-            return seat.type->name;
+            return st::describe(*seat.type);
         case Kind::reference:
         case Kind::interface:
-            return read<std::uint64_t>(seat.at) == 0 ? "NULL" : seat.type->name;
+            return read<std::uint64_t>(seat.at) == 0 ? "NULL" : st::describe(*seat.type);
         case Kind::handle:
             return {};  // see show_referred
         case Kind::text: {
             const auto length =
                 std::min<std::uint64_t>(read<std::uint64_t>(seat.at),
                                         seat.type->is_open ? 1 << 16 : seat.type->text_bytes());
-            return st::text_literal(
-                {reinterpret_cast<const char*>(seat.at + 8), static_cast<std::size_t>(length)});
+            return text_shown(*seat.type, {reinterpret_cast<const char*>(seat.at + 8),
+                                           static_cast<std::size_t>(length)});
         }
         default:
             return st::value_text(*seat.type, read<std::uint64_t>(seat.at));
     }
 }
 
+/// The array that an ARRAY[*] has been given, with its bounds.
+Seat given_array(const Seat& reference, const std::vector<std::int64_t>& bounds) {
+    Seat array = target_of(reference);
+    if (!array.at) return {};
+    auto types = std::make_shared<std::vector<st::Type>>(bounds.size() / 2);
+    const st::Type* element = reference.type->element;
+    for (std::size_t i = types->size(); i-- > 0; element = &(*types)[i]) {
+        st::Type& made = (*types)[i];
+        made.kind = Kind::array;
+        made.lower = bounds[2 * i], made.upper = bounds[2 * i + 1];
+        made.element = element;
+        made.has_inner = i + 1 < types->size();
+        made.slots = static_cast<std::uint32_t>(made.count() * st::element_slots(made));
+    }
+    array.type = element;
+    array.made = {types, element};
+    return array;
+}
+
+/// Of an ARRAY[*] of a routine or block what it has been given.
+Seat as_given(const st::Variable& array, const Seat& reference, std::byte* base) {
+    const Frame& frame = *reference.frame;
+    std::vector<std::int64_t> bounds;
+    for (const st::Routine& routine : frame.made->checked.routines)
+        if (routine.pou == array.of)
+            for (const st::Variable& part : routine.variables)
+                if (part.bound_of == &array)
+                    bounds.push_back(
+                        read<std::int64_t>(frame.seen(base + 8 * std::size_t{part.slot})));
+    return given_array(reference, bounds);
+}
+
 }  // namespace
+
+std::string text_shown(const st::Type& type, std::string_view text) {
+    if (!type.is_wide) return st::text_literal(text);
+    std::string marked;
+    for (const char c : text) {
+        if (c == '$' || c == '"') marked += '$';
+        marked += c;
+    }
+    return '"' + st::printable(marked) + '"';
+}
 
 Shown show(std::string name, const Seat& seat, const std::string& unit) {
     if (!seat.type) return {.name = std::move(name), .value = "of no type"};
@@ -183,9 +239,10 @@ Shown show(std::string name, const Seat& seat, const std::string& unit) {
     Shown shown{
         .name = std::move(name),
         .value = with_unit(text_of(seat), unit),
-        .type = seat.type->name,
+        .type = st::describe(*seat.type),
         .at = seat.copy ? nullptr : seat.at,
-        .bytes = 8 * std::size_t{is_block ? seat.type->routine->variables_end : seat.type->slots}};
+        .bytes = 8 * std::size_t{is_block ? seat.type->routine->variables_end : seat.type->slots},
+        .seat = std::make_shared<const Seat>(seat)};
     show_parts(shown, seat);
     return shown;
 }
@@ -196,23 +253,24 @@ Seat member_at(const Seat& whole, const st::Variable& member) {
     return whole.part(member.type, 8 * std::size_t{member.slot});
 }
 
-Seat target_of(const Seat& reference) {
+Seat target_of(const Seat& reference, std::int64_t bytes) {
     const st::Type* to = reference.type->element;
     const auto address = read<std::uint64_t>(reference.at);
     const auto second = read<std::uint64_t>(reference.at + 8);
     const std::uint64_t piece = second >> 32;
-    const st::Code& code = *reference.frame->code;
+    const st::Code& code = reference.frame->made->generated.code;
     if (!to || address == 0 || piece == 0 || piece > code.pieces.size()) return {};
-    const auto bit = 8 * std::int64_t{static_cast<std::int32_t>(second & 0xFFFF'FFFF)};
+    const std::int64_t first = bytes + static_cast<std::int32_t>(second & 0xFFFF'FFFF);
+    const Frame& frame = *reference.frame;
+    const auto place_of = [&](std::uint64_t slot) {
+        return frame.seen(st::place_of(slot, frame.root, *frame.context));
+    };
     for (std::uint32_t shape = 0; shape < code.shapes.size(); ++shape) {
         if (!st::same_type(*code.shapes[shape].type, *to)) continue;
-        if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, bit, shape))
-            return {to,
-                    reference.frame->seen(st::place_of(address + *slot, reference.frame->root,
-                                                       *reference.frame->context)),
-                    reference.frame};
+        if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, 8 * first, shape))
+            return {to, place_of(address + *slot), &frame};
     }
-    return {};
+    return seat_in_bytes({code.pieces[piece - 1].shape, place_of(address), first}, *to, frame);
 }
 
 Referred block_of(const std::byte* handle, const Frame& frame) {
@@ -234,8 +292,11 @@ std::byte* global_at(int global, const Frame& frame) {
 Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) {
     const std::size_t offset = 8 * std::size_t{variable.slot};
     switch (variable.space) {
-        case st::Space::frame:
-            return {variable.type, frame.seen(base + offset), &frame};
+        case st::Space::frame: {
+            const Seat seat{variable.type, frame.seen(base + offset), &frame};
+            const bool is_open = variable.type && variable.type->is_open_array();
+            return is_open ? as_given(variable, seat, base) : seat;
+        }
         case st::Space::reference: {
             const auto address = read<std::uint64_t>(frame.seen(base + offset));
             if (address == 0) return {};
@@ -245,7 +306,7 @@ Seat seat_of(const st::Variable& variable, std::byte* base, const Frame& frame) 
         case st::Space::global:
             return {variable.type, global_at(variable.global, frame) + offset, &frame};
         case st::Space::image:
-            return seat_in_image(variable, frame);
+            return seat_in_image(variable.address, *variable.type, frame);
         default:
             return {};
     }

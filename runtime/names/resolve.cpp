@@ -1,5 +1,7 @@
 #include "runtime/names/resolve.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
@@ -8,7 +10,16 @@ namespace lineshaft {
 
 namespace {
 
-/// Empty, and reported, when the text is not a value of an input.
+/// `fast`, `Mode.fast`, `Mode#fast`
+bool is_name(const Node& value) {
+    std::string text = value.text;
+    std::ranges::replace_if(
+        text, [](char c) { return c == '.' || c == '#'; }, '_');
+    return !value.quoted && is_identifier(text);
+}
+
+/// Empty, and reported, when the text is not a value of an input. What is a name is one of the
+/// enumeration that the input feeds: its own names are those, once it is wired.
 std::optional<Signal> read_input(const Reader& read, const Node& value, Value& initial) {
     Signal signal;
     if (!value.quoted && (value.text == "true" || value.text == "false")) {
@@ -16,11 +27,11 @@ std::optional<Signal> read_input(const Reader& read, const Node& value, Value& i
         initial = value.text == "true";
         return signal;
     }
-    if (!value.quoted && is_identifier(value.text))
-        read.fail(code::not_a_boolean, value,
-                  fmt::format("'{}' is not a value of an input", value.text),
-                  "write true, false or a number");
-    const auto quantity = is_identifier(value.text) ? std::nullopt : read.quantity(value);
+    if (is_name(value)) {
+        signal.type = Type::enumeration;
+        return signal;
+    }
+    const auto quantity = read.quantity(value);
     if (!quantity) return {};
     if (quantity->is_integer && !quantity->has_unit) {
         const auto with_sign = whole_value(quantity->integer, Type::integer);

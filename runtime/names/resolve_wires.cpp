@@ -145,9 +145,36 @@ void narrow(Net& net, const Signal& source, const Instance& block, const Field& 
     limited.maximum = std::min(limited.maximum, field.maximum);
 }
 
-void check_initial_values(const Resolving& to) {
+/// An input whose value is a name, and that no wire has said the enumeration of.
+bool is_of_unknown_names(const Signal& source) {
+    return source.port.instance < 0 && source.type == Type::enumeration && source.names.empty();
+}
+
+/// The first wire says it; empty where it is none, or the value is not one of it.
+std::optional<Signal> named_by(Resolving& to, const Signal& source, const Field& wired) {
+    const auto number = static_cast<std::size_t>(source.port.field);
+    InputNode& input = to.net.inputs[number];
+    if (wired.type != Type::enumeration) return {};
+    input.field.names = input.signal->names = wired.names;
+    Field named = input.field;
+    named.name = input.signal->name;
+    const auto initial = read_literal(to.read, to.program.inputs[number].second, named, Unit{});
+    if (!initial) return input.signal = std::nullopt;
+    input.initial = *initial;
+    return input.signal;
+}
+
+void check_initial_values(Resolving& to) {
     for (std::size_t i = 0; i < to.net.inputs.size(); ++i) {
-        const InputNode& input = to.net.inputs[i];
+        InputNode& input = to.net.inputs[i];
+        if (input.signal && is_of_unknown_names(*input.signal)) {
+            const Node& value = to.program.inputs[i].second;
+            to.read.fail(code::not_a_boolean, value,
+                         fmt::format("'{}' is not a value of an input", value.text),
+                         "write true, false or a number, or a name of the enumeration that it "
+                         "feeds");
+            input.signal.reset();
+        }
         if (!input.signal || input.field.admits(input.initial)) continue;
         Field named = input.field;
         named.name = input.signal->name;
@@ -163,7 +190,8 @@ void connect(Resolving& to, const Assignment& wire) {
             code::unknown_port, *value,
             fmt::format("'{}' is for outside; a wire comes from a block or an input", text->signal),
             "wire the signal that the output shows");
-    const auto source = to.net.find(to.read, *value, text->signal);
+    auto source = to.net.find(to.read, *value, text->signal);
+    if (source && is_of_unknown_names(*source)) source = named_by(to, *source, *field);
     if (!source) return;
     const Port target = to.net.port(number, *field);
     to.instance(wire).wired[static_cast<std::size_t>(target.field)] = true;

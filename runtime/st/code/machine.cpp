@@ -1,6 +1,7 @@
 #include "runtime/st/code/machine.hpp"
 
 #include <numeric>
+#include <utility>
 
 #include <sleef.h>
 
@@ -240,6 +241,26 @@ Fault execute_part(const Code& code, const CodeRoutine& routine, std::byte* copy
     Frames frames = frames_at(code, routine, copy, now, context, fuel);
     frames.base = frame;
     return run_otherwise(frames);
+}
+
+std::size_t bytes_beside(const CodeRoutine& routine) {
+    return 16 * std::size_t{routine.levels} +
+           8 * std::size_t{routine.pile.end - routine.pile.first};
+}
+
+Fault execute_beside(const Code& code, const CodeRoutine& routine, std::byte* root,
+                     std::uint64_t frame, const Scan& now, const Context& context,
+                     std::int64_t fuel, std::byte* room) {
+    CodeRoutine beside = routine;
+    beside.pile.first = static_cast<std::uint32_t>((room - root) / 8) + 2 * routine.levels;
+    beside.pile.end = beside.pile.first + routine.pile.end - routine.pile.first;
+    Frames frames(code, beside, now, context, fuel, root, room,
+                  root + 8 * std::size_t{beside.pile.first});
+    frames.base = frame;
+    Witness* const witness = std::exchange(code.witness, nullptr);
+    const Fault fault = run_whole<false, false>(frames);
+    code.witness = witness;
+    return fault;
 }
 
 }  // namespace lineshaft::st

@@ -60,4 +60,12 @@ Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance,
 Fault execute_part(const Code& code, const CodeRoutine& routine, std::byte* copy,
                    std::uint64_t frame, const Scan& now, const Context& context, std::int64_t fuel);
 
+/// A routine without parameters on the frame at an address, while the scan of `root` stands still:
+/// what runs there stays, as calls have their place in `room`, which is behind `root` and has
+/// bytes_beside(). All that `root` and `context` lead to are copies. Assertions end it.
+Fault execute_beside(const Code& code, const CodeRoutine& routine, std::byte* root,
+                     std::uint64_t frame, const Scan& now, const Context& context,
+                     std::int64_t fuel, std::byte* room);
+std::size_t bytes_beside(const CodeRoutine& routine);
+
 }  // namespace lineshaft::st

@@ -104,6 +104,7 @@ void parse_property(Parsing& p, std::vector<Pou*>& to, PouKind of) {
     Pou property;
     property.kind = PouKind::method;
     property.doc = comment_before(p, p.at, true);
+    property.is_monitored = has_attribute(p, p.at, "monitoring");
     const Token opener = p.take();
     parse_pou_modifiers(p, property);
     property.name = expect_name(p, "the name of the PROPERTY");

@@ -282,6 +282,7 @@ struct Pou {
     bool is_class = false, is_abstract = false, is_final = false, is_override = false;
     bool is_generic = false;              ///< VAR_GENERIC is the first of `blocks`
     Accessor accessor = Accessor::none;   ///< of a method
+    bool is_monitored = false;            ///< `{attribute 'monitoring' := 'call'}` of a PROPERTY
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
     bool follows_init = false;            ///< a method that is called once behind FB_init

@@ -291,6 +291,16 @@ void add_units(std::string_view unit, Offer& to) {
             to.add(name, Offered::unit, "", "");
 }
 
+/// Of one that is an enumeration, where it is declared, or set: `inputs.mode: fast`.
+void add_values_of_input(const CheckedProgram& program, const std::vector<std::string>& keys,
+                         Offer& to) {
+    const bool is_declared = keys.size() == 2 && keys[0] == "inputs";
+    for (const InputNode& input : program.net.inputs)
+        if (keys.back() == (is_declared ? input.name : "inputs." + input.name))
+            for (const std::string_view name : input.field.names)
+                to.add(name, Offered::enum_member, "", "");
+}
+
 void add_values(const Session& session, const Asked& where, const YamlPlace& place, Offer& to) {
     const std::string& key = place.keys.back();
     const std::size_t dot = place.written.rfind('.');
@@ -317,6 +327,7 @@ void add_values(const Session& session, const Asked& where, const YamlPlace& pla
             for (const TaskPlan& task : known->second->program.tasks)
                 to.add(task.name, Offered::value, "task", "");
     }
+    if (known != session.programs.end()) add_values_of_input(*known->second, place.keys, to);
     if (place.keys.size() != 3 || place.keys[0] != "blocks") return;
     const BlockType* kind = find_kind(session, where.path, block_type(where.text, place.keys));
     const Field* field = kind ? kind->find_settable(key) : nullptr;
