@@ -91,13 +91,13 @@ class Lexer {
             if (c == ' ' || (c >= '\t' && c <= '\r' && c != '\n')) continue;
             if (c == '\n')
                 new_line_ = true;
-            else if (at("(*") || at("/*") || is_translated_comment())
+            else if (at("(*") || at("/*") || at_translated_comment())
                 note_comment(&Lexer::skip_comment);
             else if (at("//"))
                 note_comment(&Lexer::skip_line);
             else if (c == '{')
                 skip_pragma();
-            else
+            else if (!skip_conflict())
                 return;
         }
     }
@@ -118,12 +118,21 @@ class Lexer {
         --at_;
     }
 
-    /// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
-    bool is_translated_comment() const {
+    /// Stops before the end of the line. It is told where it begins.
+    bool skip_conflict() {
+        const std::size_t end = new_line_ ? end_of_conflict(text_, at_) : text_.npos;
+        if (end != text_.npos && at("<"))
+            fail(place(at_, at_ + 7), "a merge of git has left both versions here",
+                 "keep one of them, and remove the lines of '<<<<<<<', '=======' and '>>>>>>>'");
+        if (end != text_.npos) at_ = end - 1;
+        return end != text_.npos;
+    }
+
+    /// Behind a name that is a call.
+    bool at_translated_comment() const {
         const auto& tokens = tokens_.tokens;
-        if (!at("(/*") || (!tokens.empty() && tokens.back().word == Word::name)) return false;
-        const std::size_t end = text_.find("*/", at_);
-        return end != std::string_view::npos && text_.substr(end).starts_with("*/)");
+        return (tokens.empty() || tokens.back().word != Word::name) &&
+               is_translated_comment(text_, at_);
     }
 
     /// Stops at the comment's last character.
@@ -201,26 +210,11 @@ class Lexer {
             choices_.pop_back();
         }
     }
-    static bool ends_choice(std::string_view pragma) {
-        return says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
-    }
 
-    /// Stops at the last character of the pragma that ends the part.
     void skip_part(bool may_choose) {
-        std::size_t inner = 0;
-        for (++at_; at_ < text_.size(); ++at_) {
-            if (text_[at_] != '{') continue;
-            const std::size_t end = std::min(text_.find('}', at_), text_.size() - 1);
-            const std::string_view pragma = text_.substr(at_, end + 1 - at_);
-            at_ = end;
-            const bool ends = ends_choice(pragma);
-            if (ends && inner == 0) return choices_.pop_back();
-            inner += says_pragma(pragma, "if");
-            inner -= ends;
-            const bool chosen = says_pragma(pragma, "else") ||
-                                (says_pragma(pragma, "elsif") && holds(pragma, defined_));
-            if (may_choose && inner == 0 && chosen) return;
-        }
+        const LeftOut part = left_out(text_, at_, may_choose, defined_);
+        at_ = part.last;
+        if (part.ends_choice) choices_.pop_back();
     }
 
     void read_token() {
