@@ -1089,6 +1089,83 @@ def check_packages():
     run("run", "--quiet", "packed.yaml")
 
 
+def check_classes_of_system():
+    """Events of TwinCAT itself are of classes that no file of a project has."""
+    twincat("system", "POU", "MAIN", "PROGRAM MAIN\nVAR class : GUID; n : INT; END_VAR",
+            "IF class.Data1 <> TC_EVENT_CLASSES.TcRouterEventClass.Data1 THEN n := n + 1; END_IF\nclass := TC_EVENT_CLASSES.TcRouterEventClass;")
+    write("system/Task.TcTTO", TASK)
+    plcproj("system/System.plcproj", "System", ["MAIN.TcPOU", "Task.TcTTO"], [])
+    run("new", "system_classes", "--from", "system")
+    made = (work / "system_classes.yaml").read_text()
+    (work / "system_classes.yaml").write_text(made + "expect:\n  - {at: end, MAIN.n: 1}\n")
+    run("run", "--quiet", "system_classes.yaml")
+
+
+def check_private_packages():
+    """What a package has for itself is of its programs and of those below it: others may have the same names."""
+    private = '  <Object Type="File" Private="true">{}</Object>'
+    program = '<Program SubType="IEC"><Files><File>Main.st</File>{}</Files></Program>\n'
+    write("Apart/Logical/Package.pkg", PACKAGE.format("  <Object>Global.var</Object>\n  <Object>Left</Object>\n  <Object>Right</Object>"))
+    write("Apart/Logical/Global.var", "VAR\n\tshared : INT;\nEND_VAR\n")
+    for cell, step in (("Left", 1), ("Right", 100)):
+        write(f"Apart/Logical/{cell}/Package.pkg",
+              PACKAGE.format("\n".join([private.format("Own.var"), private.format("Own.typ"), "  <Object>Deep</Object>", "  <Object>Task</Object>"])))
+        write(f"Apart/Logical/{cell}/Own.typ", f"TYPE\n\tOwn_type : STRUCT\n\t\t{cell}_n : INT;\n\tEND_STRUCT;\nEND_TYPE\n")
+        write(f"Apart/Logical/{cell}/Own.var", "VAR\n\tcount : INT;\n\town : Own_type;\nEND_VAR\n")
+        write(f"Apart/Logical/{cell}/Task/IEC.prg", program.format(""))
+        write(f"Apart/Logical/{cell}/Task/Main.st", f"PROGRAM _CYCLIC\n\tcount := count + {step};\n\tshared := shared + 1;\nEND_PROGRAM\n")
+        write(f"Apart/Logical/{cell}/Deep/Package.pkg", PACKAGE.format(private.format("Deep.var") + f"\n  <Object>{cell}Deep</Object>"))
+        write(f"Apart/Logical/{cell}/Deep/Deep.var", "VAR\n\tdeep : Own_type;\nEND_VAR\n")
+        write(f"Apart/Logical/{cell}/Deep/{cell}Deep/IEC.prg", program.format("<File>V.var</File><File Private=\"true\">T.typ</File>"))
+        write(f"Apart/Logical/{cell}/Deep/{cell}Deep/T.typ", "TYPE\n\tPair : ARRAY[0..1] OF Own_type;\nEND_TYPE\n")
+        write(f"Apart/Logical/{cell}/Deep/{cell}Deep/V.var", "VAR\n\tn : INT;\n\tpair : Pair;\nEND_VAR\n")
+        write(f"Apart/Logical/{cell}/Deep/{cell}Deep/Main.st", f"PROGRAM _CYCLIC\n\tdeep.{cell}_n := count;\n\town.{cell}_n := deep.{cell}_n;\n"
+              f"\tn := own.{cell}_n;\n\tpair[1].{cell}_n := shared;\nEND_PROGRAM\n")
+    (work / "Apart/Logical/Left/Task").rename(work / "Apart/Logical/Left/LeftTask")
+    (work / "Apart/Logical/Right/Task").rename(work / "Apart/Logical/Right/RightTask")
+    for cell in ("Left", "Right"):
+        listed = work / f"Apart/Logical/{cell}/Package.pkg"
+        listed.write_text(listed.read_text().replace(">Task<", f">{cell}Task<"))
+    assert "warning" not in run("check", "Apart")
+    run("new", "apart", "--from", "Apart")
+    made = (work / "apart.yaml").read_text()
+    (work / "apart.yaml").write_text(made + "expect:\n  - {at: end, LeftDeep.n: 100}\n  - {at: end, RightDeep.n: 10000}\n")
+    run("run", "--quiet", "apart.yaml")
+    listed = work / "Apart/Logical/Left/Package.pkg"
+    listed.write_text(listed.read_text().replace(' Private="true"', ""))
+    main = work / "Apart/Logical/Right/RightTask/Main.st"
+    main.write_text(main.read_text().replace("shared := shared", "shared := own.Left_n"))
+    told = run("check", "Apart", code=2)
+    assert "Main.st:3:16: error[L0904]: _Logical._Right.Own_type has no 'Left_n'" in told, told
+
+
+def check_projects_beside():
+    """Several projects of Automation Studio in a folder are checked apart, each with what is in none of them."""
+    for name, member in (("One", "left"), ("Two", "right")):
+        write(f"Both/{name}/Logical/Package.pkg", PACKAGE.format("  <Object>Types.typ</Object>\n  <Object>Main</Object>"))
+        write(f"Both/{name}/Logical/Types.typ", f"TYPE\n\tBoth_type : STRUCT\n\t\t{member} : Shared_type;\n\tEND_STRUCT;\nEND_TYPE\n")
+        write(f"Both/{name}/Logical/Main/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Main.var</File></Files></Program>\n')
+        write(f"Both/{name}/Logical/Main/Main.var", "VAR\n\tboth : Both_type;\nEND_VAR\n")
+        write(f"Both/{name}/Logical/Main/Main.st", f"PROGRAM _CYCLIC\n\tboth.{member}.n := 1;\nEND_PROGRAM\n")
+    write("Both/Common/Shared.typ", "TYPE\n\tShared_type : STRUCT\n\t\tn : INT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    told = run("check", "Both")
+    assert "warning" not in told, told
+    told = run("new", "both", "--from", "Both", code=2)
+    assert "'Both' has several projects" in told and "Both/One" in told and "Both/Two" in told, told
+    main = work / "Both/Two/Logical/Main/Main.st"
+    main.write_text(main.read_text().replace("both.right.n", "both.left.n"))
+    told = run("check", "Both", code=2)
+    assert "Both/Two/Logical/Main/Main.st:2:7: error[L0904]: Both_type has no 'left'" in told and "3 projects" in told, told
+
+
+def check_typst():
+    """Chapters of a thesis in Typst, which are named as B&R's types are."""
+    write("Thesis/chapters/plc.typ", "#import \"lib.typ\": *\n= PLC\nThe program of a PLC ...\n")
+    write("Thesis/plc/Types.typ", "TYPE\n\tKind : (STOP, GO);\nEND_TYPE\n")
+    write("Thesis/plc/Main.st", "PROGRAM Main\nVAR kind : Kind; END_VAR\nkind := GO;\nEND_PROGRAM\n")
+    run("check", "Thesis", "--source-dialect", "automation_studio")
+
+
 def check_later_constants():
     """B&R's constants may be made of those that stand further down, as a sample of theirs has it."""
     write("Later/Logical/Table/IEC.prg", '<Program SubType="IEC"><Files><File>Main.st</File><File>Table.var</File></Files></Program>\n')
@@ -1532,6 +1609,7 @@ def check_solution():
     alone = run("check", "sln/app/App.sln", code=2)
     assert "3 of 7 POUs" in alone, alone
     assert "libraries that are not here: Ramps" in alone, alone
+    check_classes_of_system()
     run("new", "both", "--from", "sln")
     text = (work / "both.yaml").read_text()
     assert 'sources: ["sln/app/App/App.plcproj", "sln/lib/Lib/Lib.plcproj"]' in text, text
@@ -2000,6 +2078,9 @@ with tempfile.TemporaryDirectory() as temporary:
     check_nothing()
     check_automation_studio()
     check_packages()
+    check_private_packages()
+    check_projects_beside()
+    check_typst()
     check_later_constants()
     check_task_classes()
     check_headers()

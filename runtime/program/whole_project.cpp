@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <set>
 
+#include "runtime/projects/packages.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/source/letters.hpp"
 
@@ -16,6 +18,34 @@ namespace {
 
 bool is_plcproj(const std::string& path) {
     return lower(fs::path(path).extension().string()) == ".plcproj";
+}
+
+/// Folders of projects of Automation Studio, where there are several.
+std::set<std::string> studio_projects_of(const std::vector<std::string>& files) {
+    std::set<std::string> folders;
+    for (const std::string& file : files)
+        if (std::string folder = projects::studio_project_of(file); !folder.empty())
+            folders.insert(std::move(folder));
+    if (folders.size() == 1) folders.clear();
+    return folders;
+}
+
+/// What belongs to none of the projects below a folder, whose files these are.
+WholeProject rest_of(const std::string& path, const std::vector<std::string>& files,
+                     const std::set<std::string>& studio,
+                     const std::vector<std::string>& include_dirs, Diagnostics& out) {
+    WholeProject rest{.path = path, .project = {}};
+    for (const std::string& file : files) {
+        if (is_plcproj(file) || studio.contains(projects::studio_project_of(file))) continue;
+        projects::Project read = read_project(file, include_dirs, out);
+        for (auto& source : read.sources) rest.project.add(std::move(source));
+        std::ranges::move(read.tasks, std::back_inserter(rest.project.tasks));
+        std::ranges::move(read.organization_blocks,
+                          std::back_inserter(rest.project.organization_blocks));
+        std::ranges::move(read.libraries, std::back_inserter(rest.project.libraries));
+    }
+    rest.own = rest.project.sources.size();
+    return rest;
 }
 
 /// `.plcproj` below a folder, or what a file leads to.
@@ -110,26 +140,22 @@ std::vector<WholeProject> read_projects(const std::string& path,
     const std::vector<std::string> files = plcprojs_of(path);
     std::vector<WholeProject> made;
     std::error_code error;
-    const bool is_folder = fs::is_directory(path, error);
-    if (files.empty()) {
-        made.push_back({.path = path, .project = read_project(path, include_dirs, out)});
+    const auto below = fs::is_directory(path, error) ? projects::sources_below(path, error)
+                                                     : std::vector<std::string>();
+    const std::set<std::string> studio = studio_projects_of(below);
+    const auto add = [&](const std::string& at) {
+        made.push_back({.path = at, .project = read_project(at, include_dirs, out)});
         made.back().own = made.back().project.sources.size();
-        return made;
+    };
+    for (const std::string& folder : studio) add(folder);
+    if (!files.empty()) {
+        Projects all(path, include_dirs, out);
+        for (const std::string& file : files) made.push_back(all.whole(file));
     }
-    Projects all(path, include_dirs, out);
-    for (const std::string& file : files) made.push_back(all.whole(file));
-    if (!is_folder) return made;
-    WholeProject rest{.path = path, .project = {}};
-    for (const std::string& file : projects::sources_below(path, error)) {
-        if (is_plcproj(file)) continue;
-        projects::Project read = read_project(file, include_dirs, out);
-        for (auto& source : read.sources) rest.project.add(std::move(source));
-        std::ranges::move(read.tasks, std::back_inserter(rest.project.tasks));
-        std::ranges::move(read.organization_blocks,
-                          std::back_inserter(rest.project.organization_blocks));
-        std::ranges::move(read.libraries, std::back_inserter(rest.project.libraries));
-    }
-    rest.own = rest.project.sources.size();
+    if (made.empty()) return add(path), made;
+    WholeProject rest = rest_of(path, below, studio, include_dirs, out);
+    for (std::size_t i = 0; i < studio.size(); ++i)
+        for (const auto& source : rest.project.sources) made[i].project.add(source);
     if (rest.own > 0) made.push_back(std::move(rest));
     return made;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/grids.hpp"
+#include "runtime/projects/packages.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
@@ -61,6 +62,7 @@ class IecProgram {
         for (const pugi::xml_node file : list_.root().child("Files").children("File")) add(file);
         const Mark place = list_.mark_of_tag(list_.root());
         const std::string name = folder().filename().string();
+        use_packages(place);
         for (const auto& [path, mark] : types_) add_types(path, mark);
         for (const auto& [path, mark] : functions_) add_functions(path, mark);
         Excerpts text;
@@ -133,6 +135,22 @@ class IecProgram {
         }
     }
 
+    /// What the packages above have for themselves.
+    void use_packages(const Mark& mark) {
+        std::string last;
+        for (const std::string& file :
+             private_files_above(fs::path(list_.file()->path).parent_path())) {
+            Diagnostics unread;
+            const auto path =
+                is_structured_text(file) ? to_.resolve(file, mark, unread) : std::nullopt;
+            if (!path) continue;
+            read_sources(to_, *path, mark);
+            std::string space = private_space_of(file);
+            if (space != last) usings_.write(fmt::format("USING {};\n", space), mark);
+            last = std::move(space);
+        }
+    }
+
     /// `_Belt_Types`, of the folder and the file.
     static std::string space_of(const std::string& path) {
         std::string name = "_";
@@ -158,6 +176,7 @@ class IecProgram {
         if (!source || !has_types(source)) return;
         const std::string space = space_of(path);
         Excerpts text;
+        text.append(usings_);
         text.write(fmt::format("NAMESPACE {}\n", space), mark);
         text.copy(PlacedFile(source), {0, source->text.size()});
         text.append(constants_);

@@ -18,6 +18,14 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_files = 64;
 
+/// Of TwinCAT itself: a project's files have them where its events are named, too.
+constexpr std::pair<std::string_view, std::string_view> classes_of_system[] = {
+    {"TcSystemEventClass", "{BB2A9999-102E-421A-8D3D-B0660E07B1FE}"},
+    {"TcRouterEventClass", "{E759605A-2341-48FC-9F3F-C8FA405C4B24}"},
+    {"TcGeneralAdsEventClass", "{7D760066-D373-4A0C-B0F1-328B1620B0F0}"},
+    {"TcRTimeEventClass", "{92F05393-06A8-48C2-8871-EAA38C1E3990}"},
+    {"Win32EventClass", "{4ABEFBBF-6620-4349-91AD-E6110A3BE851}"}};
+
 bool is_name(std::string_view text) {
     return !text.empty() && is_letter(text.front()) &&
            std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
@@ -54,6 +62,13 @@ bool is_severity(const std::string& text) {
     return std::ranges::find(all, text) != all.end();
 }
 
+bool names(const Project& project, std::string_view word) {
+    const std::string small = lower(word);
+    return std::ranges::any_of(project.sources, [&](const auto& source) {
+        return lower(source->text).find(small) != std::string::npos;
+    });
+}
+
 class EventClasses {
   public:
     void add_file(const std::string& path) {
@@ -65,9 +80,14 @@ class EventClasses {
     }
 
     void finish(Project& project, const std::string& path) {
+        for (const auto& [name, guid] : classes_of_system)
+            if (names(project, name) && known_.insert(lower(name)).second)
+                add_guid(name, guid_value(guid), {});
         if (known_.empty()) return;
-        project.add(types_.finish(path, "TC_EVENTS types"));
-        project.add(list_of(entries_).finish(path, "TC_EVENTS"));
+        if (!entries_.is_empty()) {
+            project.add(types_.finish(path, "TC_EVENTS types"));
+            project.add(list_of(entries_).finish(path, "TC_EVENTS"));
+        }
         project.add(list_of(guids_).finish(path, "TC_EVENT_CLASSES"));
     }
 
@@ -94,6 +114,10 @@ class EventClasses {
         }
         types_.write("END_STRUCT END_TYPE\n", place);
         entries_.write(fmt::format("{0} : TC_EVENTS_{0};\n", name), place);
+        add_guid(name, guid, place);
+    }
+
+    void add_guid(std::string_view name, const std::string& guid, const Mark& place) {
         guids_.write(fmt::format("{} : GUID := {};\n", name, guid), place);
     }
 
@@ -108,12 +132,6 @@ class EventClasses {
     std::set<std::string> known_;
     Excerpts types_, entries_, guids_;
 };
-
-bool names_events(const Project& project) {
-    return std::ranges::any_of(project.sources, [](const auto& source) {
-        return lower(source->text).find("tc_event") != std::string::npos;
-    });
-}
 
 bool ends_in(const fs::path& file, std::string_view ending) {
     return lower(file.extension().string()) == ending;
@@ -144,7 +162,7 @@ std::vector<std::string> files_of(const fs::path& folder) {
 }  // namespace
 
 void read_event_classes(const Reading& to, const std::string& plcproj, const Mark& where) {
-    if (!names_events(to.project)) return;
+    if (!names(to.project, "tc_event")) return;
     const fs::path folder = fs::path(plcproj).parent_path();
     EventClasses classes;
     Diagnostics unread;

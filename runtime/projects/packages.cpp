@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "runtime/projects/drawings/rung_graphs.hpp"
+#include "runtime/projects/xml.hpp"
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
@@ -13,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* names_of_packages[] = {"Package.pkg", "package.pkg"};
 constexpr const char* names_of_lists[] = {"Package.pkg", "package.pkg", "IEC.lby"};
 constexpr std::size_t longest_list = 1U << 20;
 
@@ -25,7 +27,67 @@ bool is_listed(const std::string& list, const std::string& name) {
     });
 }
 
+/// That the package in a folder has for itself.
+std::vector<std::string> private_files_of(const fs::path& folder) {
+    std::vector<std::string> files;
+    std::error_code unknown;
+    for (const char* name : names_of_packages) {
+        Diagnostics unread;
+        const fs::path path = folder / name;
+        const auto list =
+            fs::exists(path, unknown) ? XmlFile::read(path.string(), unread) : nullptr;
+        if (!list) continue;
+        for (const auto object : list->root().child("Objects").children("Object"))
+            if (list->plain(object.attribute("Private")) == "true" &&
+                list->plain(object.attribute("Type")) == "File")
+                files.push_back((folder / list->plain(object)).string());
+        break;
+    }
+    return files;
+}
+
+/// `_Logical._Cell`: what is named in a namespace is found in those within it.
+std::string space_of(const fs::path& folder) {
+    std::string space;
+    std::error_code unknown;
+    for (const fs::path& part : fs::absolute(folder, unknown).lexically_normal()) {
+        std::string name = part.string();
+        if (name.empty() || (space.empty() && name != "Logical")) continue;
+        for (char& c : name)
+            if (!is_letter(c) && !is_digit(c)) c = '_';
+        space += (space.empty() ? "_" : "._") + name;
+    }
+    return space;
+}
+
 }  // namespace
+
+std::string studio_project_of(const fs::path& file) {
+    std::error_code unknown;
+    for (fs::path at = file.parent_path(); at.has_filename(); at = at.parent_path()) {
+        const fs::path folder = at.parent_path();
+        const bool is_half = at.filename() == "Logical" || at.filename() == "Physical";
+        for (const char* name : names_of_packages)
+            if (is_half && fs::exists(folder / "Logical" / name, unknown)) return folder.string();
+    }
+    return {};
+}
+
+std::string private_space_of(const fs::path& file) {
+    const fs::path folder = file.parent_path();
+    const auto files = private_files_of(folder);
+    const std::string path = file.string();
+    return std::ranges::find(files, path) == files.end() ? "" : space_of(folder);
+}
+
+std::vector<std::string> private_files_above(const fs::path& folder) {
+    std::vector<std::string> files;
+    for (fs::path at = folder; at.has_filename() && at.filename() != "Logical";) {
+        at = at.parent_path();
+        std::ranges::move(private_files_of(at), std::back_inserter(files));
+    }
+    return files;
+}
 
 /// Empty: it has none.
 const std::string& Packages::list_of(const fs::path& folder) {

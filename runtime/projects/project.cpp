@@ -67,6 +67,8 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     }
     read_organization_blocks(to, source);
     source = with_lists_as_statements(std::move(source));
+    if (const std::string space = private_space_of(path); !space.empty())
+        source = in_namespace(source, space);
     if (std::string form = form_in_library(path); !form.empty()) {
         SourceFile made = *source;
         made.read_as = std::move(form);
@@ -135,6 +137,21 @@ bool is_database(const std::string& file) {
     text.read(first.data(), static_cast<std::streamsize>(first.size()));
     std::erase(first, '\0');  // UTF-16
     return lower(std::move(first)).find("data_block") == std::string::npos;
+}
+
+/// Chapters in Typst's markup are named as B&R's types are: those begin with TYPE, or stand beside
+/// a list of Automation Studio's.
+bool is_of_typst(const std::string& file) {
+    constexpr const char* lists[] = {"Package.pkg", "package.pkg", "IEC.prg",    "ANSIC.prg",
+                                     "IEC.lby",     "ANSIC.lby",   "Binary.lby", "binary.lby"};
+    if (!ends_with(file, ".typ")) return false;
+    std::error_code unknown;
+    const fs::path folder = fs::path(file).parent_path();
+    for (const char* list : lists)
+        if (fs::exists(folder / list, unknown)) return false;
+    Diagnostics unread;
+    const auto source = read_source(file, unread);
+    return source && !begins_with_unit(source->text);
 }
 
 /// A table of exports, which linkers name as CoDeSys does its files.
@@ -250,6 +267,7 @@ std::vector<std::string> sources_below(const std::string& folder, std::error_cod
     if (!std::ranges::all_of(files, has_name_of_any_text))
         std::erase_if(files, has_name_of_any_text);
     std::erase_if(files, is_database);
+    std::erase_if(files, is_of_typst);
     std::erase_if(files, is_of_a_linker);
     std::erase_if(files, is_built);
     std::erase_if(files, is_of_no_source);

@@ -150,7 +150,8 @@ std::string check_project(const std::string& path, const LoadOptions& options, D
         st::compile_used(
             each.project.sources, task_programs(each.project), standard_blocks(), found,
             {.references = references_of(each.project), .addresses = {}, .foreign = &foreign});
-        if (each.path == path) found = without_neighbours(each.project.sources, found);
+        if (each.path == path || std::filesystem::is_directory(each.path))
+            found = without_neighbours(each.project.sources, found);
         whole += each.own;
         wrong += with_mistakes(each, found, foreign).size();
         tasks += each.project.tasks.size();

@@ -306,14 +306,18 @@ class Grid {
             run_block(box);
     }
 
+    /// It leads on what leads to it.
     void run_action(const Cell& cell) {
         const Mark place = place_of(cell);
-        const Value when = power(cell.row, cell.begin, place);
+        Value when = power(cell.row, cell.begin, place);
         if (when.is_empty()) return;
+        const bool goes_on = !when.is_always && is_taken(cell.row, cell.end);
+        if (goes_on) when = kept_in(now_, variables_.make("_wire", "BOOL"), when, place);
         write_if(now_, when, place);
         file_.copy(now_, cell.node.child("output").attribute("name"));
         now_.write("();\n", place);
         write_end_if(now_, when, place);
+        give(cell, std::move(when));
     }
 
     /// Where a line from there ends that nothing else takes anything from.

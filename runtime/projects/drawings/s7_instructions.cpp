@@ -194,7 +194,7 @@ Value timer_preset(Running& r) {
 Value jump(Running& r, const Value& when) {
     r.open(when);
     r.write("GOTO ");
-    r.to.append(r.operand("operand").text);
+    r.to.append(r.operand(r.it.find("label") ? "label" : "operand").text);
     r.write(";\n");
     r.close(when);
     return r.power;
@@ -282,8 +282,8 @@ constexpr Row rows[] = {
     {timer_coil, " tp_coil ton_coil tof_coil tonr_coil ", " timer pt "},
     {timer_reset, " rt_coil resetiectimercoil ", " timer operand "},
     {timer_preset, " pt_coil ", " timer operand pt "},
-    {jump_coil, " jumpcoil ", " operand "},
-    {inverted_jump_coil, " i_jumpcoil ", " operand "},
+    {jump_coil, " jumpcoil ", " operand label "},
+    {inverted_jump_coil, " i_jumpcoil ", " operand label "},
     {return_coil, " return returntrue returncoil ", ""},
     {failed_return_coil, " returnfalse ", ""},
     {reset_set, " s_rs rs ", " s s1 r r1 operand "},

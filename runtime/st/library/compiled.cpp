@@ -25,7 +25,7 @@ namespace {
 void parse_all(Compiled& to, const Catalog& standard, Diagnostics& out, const SourceFile* tests) {
     bool uses_standard = false;
     std::set<const BlockType*> used;
-    LibraryNames libraries(standard, to.libraries);
+    LibraryNames libraries(standard, to.libraries, !to.missing_libraries.empty());
     for (const auto& source : to.sources) {
         Diagnostics own, follows;
         for (const Diagnostic& mistake : source->mistakes) {

@@ -142,8 +142,9 @@ NameSet declared_namespaces(const Tree& tree) {
 
 }  // namespace
 
-LibraryNames::LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references)
-    : catalog_(catalog), index_(index_of(catalog)) {
+LibraryNames::LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references,
+                           bool misses_some)
+    : catalog_(catalog), index_(index_of(catalog)), misses_some_(misses_some) {
     for (const LibraryReference& reference : references) references_.insert(reference.name);
 }
 
@@ -310,6 +311,12 @@ std::optional<std::size_t> LibraryNames::pins_of(const LibraryFile& file,
     return std::ranges::count_if(*named, [&](auto pin) { return words.contains(pin); });
 }
 
+/// The sources name more that a block has not than it has.
+bool LibraryNames::is_another(const LibraryFile& file, std::string_view name) const {
+    const auto own = pins_of(file, name);
+    return own && 2 * *own < find_in(pins_, name)->size();
+}
+
 std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
     const BlockType* type = catalog_.find(name);
     const NameSet* named = find_in(pins_, name);
@@ -329,12 +336,14 @@ const LibraryFile* LibraryNames::choose(std::string_view name) const {
         const bool is_softmotion = file->library.starts_with("SM3_");
         return pins_of(*file, name) == 0 || (is_softmotion && in_twincat);
     });
-    if (files.empty()) return nullptr;
     const auto is_referred_to = [&](const LibraryFile* f) {
         return references_.contains(f->library);
     };
     if (std::ranges::any_of(files, is_referred_to))
         std::erase_if(files, std::not_fn(is_referred_to));
+    else if (misses_some_)
+        std::erase_if(files, [&](const LibraryFile* file) { return is_another(*file, name); });
+    if (files.empty()) return nullptr;
     const auto pins = [&](const LibraryFile* file) { return pins_of(*file, name).value_or(0); };
     const std::size_t most = pins(*std::ranges::max_element(files, {}, pins));
     std::erase_if(files, [&](const LibraryFile* file) { return pins(file) < most; });

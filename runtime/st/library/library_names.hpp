@@ -30,14 +30,17 @@ namespace lineshaft::st {
 /// Of several libraries that have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first; of
 /// those alone that the project refers to, where there is one. A block that has nothing of what
-/// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's. Names of a library
-/// that is not open, and of helpers, which begin with a small letter, are not looked for, nor other
-/// names in SCL, nor what is the name of a variable of the sources, or of the library's file that
-/// is read. A library whose namespace the sources declare themselves is theirs.
+/// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's, nor one that has less
+/// than half of it where the project refers to other libraries, of which some are not here. Names
+/// of a library that is not open, and of helpers, which begin with a small letter, are not looked
+/// for, nor other names in SCL, nor what is the name of a variable of the sources, or of the
+/// library's file that is read. A library whose namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
-    /// `references` are those that a project has to libraries.
-    LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references);
+    /// `references` are those that a project has to libraries that are here, `misses_some`: it has
+    /// more.
+    LibraryNames(const Catalog& catalog, const std::vector<LibraryReference>& references,
+                 bool misses_some = false);
 
     /// Those that a source says.
     void note_libraries(const Tokens& tokens);
@@ -64,6 +67,7 @@ class LibraryNames {
     void note_pins(const Tree& tree);
     std::string_view block_of(const Declaration& declared) const;
     std::optional<std::size_t> pins_of(const LibraryFile& file, std::string_view name) const;
+    bool is_another(const LibraryFile& file, std::string_view name) const;
     std::size_t pins_of_catalog(std::string_view name) const;
     const LibraryFile* choose(std::string_view name) const;
     void take(const LibraryFile& file);
@@ -74,6 +78,7 @@ class LibraryNames {
     const Catalog& catalog_;
     const Index& index_;
     NameSet references_;
+    bool misses_some_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0,
                 declarations_ = 0;  ///< that were looked at
     std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,

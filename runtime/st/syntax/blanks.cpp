@@ -14,12 +14,22 @@ namespace {
 
 constexpr int deepest_comment = 200;
 
-/// TIA's comment in several languages: `(/* ... */)`. Behind a name that is a call.
-bool is_translated_comment(const TextCursor& in) {
+/// Behind a name it is a call.
+bool at_translated_comment(const TextCursor& in) {
     const auto& tokens = in.tokens.tokens;
-    if (!in.is_at("(/*") || (!tokens.empty() && tokens.back().word == Word::name)) return false;
-    const std::size_t end = in.text.find("*/", in.at);
-    return end != std::string_view::npos && in.text.substr(end).starts_with("*/)");
+    return (tokens.empty() || tokens.back().word != Word::name) &&
+           is_translated_comment(in.text, in.at);
+}
+
+/// Stops before the end of the line. It is told where it begins.
+bool skip_conflict(TextCursor& in) {
+    const std::size_t end = in.new_line ? end_of_conflict(in.text, in.at) : in.text.npos;
+    if (end == in.text.npos) return false;
+    if (in.is_at("<"))
+        in.fail(in.place(in.at, in.at + 7), "a merge of git has left both versions here",
+                "keep one of them, and remove the lines of '<<<<<<<', '=======' and '>>>>>>>'");
+    in.at = end - 1;
+    return true;
 }
 
 void too_deep(TextCursor& in, Place where) {
@@ -86,26 +96,10 @@ bool skip_foreign_code(TextCursor& in) {
     return true;
 }
 
-bool ends_choice(std::string_view pragma) {
-    return says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
-}
-
-/// Stops at the last character of the pragma that ends the part.
 void skip_part(TextCursor& in, bool may_choose) {
-    std::size_t inner = 0;
-    for (++in.at; in.at < in.text.size(); ++in.at) {
-        if (in.text[in.at] != '{') continue;
-        const std::size_t end = std::min(in.text.find('}', in.at), in.text.size() - 1);
-        const std::string_view pragma = in.text.substr(in.at, end + 1 - in.at);
-        in.at = end;
-        const bool ends = ends_choice(pragma);
-        if (ends && inner == 0) return in.choices.pop_back();
-        inner += says_pragma(pragma, "if");
-        inner -= ends;
-        const bool chosen = says_pragma(pragma, "else") ||
-                            (says_pragma(pragma, "elsif") && holds(pragma, in.defined));
-        if (may_choose && inner == 0 && chosen) return;
-    }
+    const LeftOut part = left_out(in.text, in.at, may_choose, in.defined);
+    in.at = part.last;
+    if (part.ends_choice) in.choices.pop_back();
 }
 
 /// `{IF defined (x)}`, `{define x}`: a part whose condition does not hold is left out.
@@ -142,13 +136,13 @@ void skip_blanks(TextCursor& in) {
         if (c == ' ' || (c >= '\t' && c <= '\r' && c != '\n')) continue;
         if (c == '\n')
             in.new_line = true;
-        else if (in.is_at("(*") || in.is_at("/*") || is_translated_comment(in))
+        else if (in.is_at("(*") || in.is_at("/*") || at_translated_comment(in))
             note_comment(in, skip_comment);
         else if (in.is_at("//"))
             note_comment(in, skip_line);
         else if (c == '{')
             skip_pragma(in);
-        else
+        else if (!skip_conflict(in))
             return;
     }
 }

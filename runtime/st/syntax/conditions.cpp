@@ -93,6 +93,29 @@ bool holds(std::string_view pragma, const Definitions& defined) {
     return any_holds(words, defined);
 }
 
+bool ends_choice(std::string_view pragma) {
+    return says_pragma(pragma, "end_if") || says_pragma(pragma, "endif");
+}
+
+LeftOut left_out(std::string_view text, std::size_t at, bool may_choose,
+                 const Definitions& defined) {
+    std::size_t inner = 0;
+    for (++at; at < text.size(); ++at) {
+        if (text[at] != '{') continue;
+        const std::size_t end = std::min(text.find('}', at), text.size() - 1);
+        const std::string_view pragma = text.substr(at, end + 1 - at);
+        at = end;
+        const bool ends = ends_choice(pragma);
+        if (ends && inner == 0) return {at, true};
+        inner += says_pragma(pragma, "if");
+        inner -= ends;
+        const bool chosen =
+            says_pragma(pragma, "else") || (says_pragma(pragma, "elsif") && holds(pragma, defined));
+        if (may_choose && inner == 0 && chosen) return {at, false};
+    }
+    return {at, false};
+}
+
 void note_definition(std::string_view pragma, Definitions& defined) {
     PragmaWords words{pragma};
     const std::string_view what = words.take(), name = words.take();

@@ -48,6 +48,22 @@ std::size_t end_of_tools_comment(std::string_view text, std::size_t at) {
     return close == rest.npos ? 0 : at + close + 2;
 }
 
+std::size_t end_of_conflict(std::string_view text, std::size_t at) {
+    const std::string_view rest = text.substr(at);
+    const auto line_behind = [&](std::size_t begin) { return text.find('\n', begin); };
+    if (rest.starts_with("<<<<<<< ") || rest.starts_with(">>>>>>> ")) return line_behind(at);
+    if (rest.starts_with("||||||| ")) return text.find("\n=======", at);
+    if (!rest.starts_with("=======\n") && !rest.starts_with("=======\r\n")) return text.npos;
+    const std::size_t theirs = text.find("\n>>>>>>> ", at);
+    return theirs == text.npos ? theirs : line_behind(theirs + 1);
+}
+
+bool is_translated_comment(std::string_view text, std::size_t at) {
+    if (!text.substr(at).starts_with("(/*")) return false;
+    const std::size_t end = text.find("*/", at);
+    return end != text.npos && text.substr(end).starts_with("*/)");
+}
+
 std::size_t end_of_foreign_code(std::string_view text, std::size_t at) {
     if (text.substr(at).starts_with("{{")) {
         const std::size_t end = text.find("}}", at);

@@ -17,6 +17,13 @@ std::size_t end_of_section(std::string_view text, std::size_t at, std::string_vi
 /// text between `(*@KEY@:DESCRIPTION*)` and `(*@KEY@:END_DESCRIPTION*)`.
 std::size_t end_of_tools_comment(std::string_view text, std::size_t at);
 
+/// Where a merge of git has left two versions at the beginning of a line: behind the line
+/// `<<<<<<< ours`, or from `=======` on behind `>>>>>>> theirs`; npos: it has not.
+std::size_t end_of_conflict(std::string_view text, std::size_t at);
+
+/// TIA's comment in several languages begins at `at`: `(/* ... */)`.
+bool is_translated_comment(std::string_view text, std::size_t at);
+
 /// Behind `{{ C }}` of matiec's compilers and `{external C++ }` of STruCpp, in which braces nest,
 /// which a program runs as well without; npos: it is none.
 std::size_t end_of_foreign_code(std::string_view text, std::size_t at);

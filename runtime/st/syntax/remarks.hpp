@@ -43,6 +43,19 @@ using Definitions = NameMap<std::string_view>;
 /// parentheses. What else can be asked there, of a project or a device, does not hold.
 bool holds(std::string_view pragma, const Definitions& defined);
 
+/// `{END_IF}`
+bool ends_choice(std::string_view pragma);
+
+/// Where a part that does not hold ends: at the last character of a pragma.
+struct LeftOut {
+    std::size_t last = 0;
+    bool ends_choice = false;  ///< all of it; else what follows holds
+};
+
+/// Of the part of an `{IF}` behind `at`; `may_choose`: none of the parts before it held.
+LeftOut left_out(std::string_view text, std::size_t at, bool may_choose,
+                 const Definitions& defined);
+
 /// `{define x}`, `{define x '1'}` and `{undefine x}`.
 void note_definition(std::string_view pragma, Definitions& defined);
 

@@ -12,7 +12,7 @@ namespace {
 
 /// A network of SimaticML: a contact at `a`, part 9, and a coil at `d` where that leads to one.
 struct Net {
-    std::string parts = {}, wires = {};
+    std::string parts = {}, wires = {}, labels = {};
     int count = 100;
 
     static std::string constant(const std::string& value) {
@@ -40,9 +40,18 @@ struct Net {
     void wire(const std::string& from, const std::string& to) {
         wires += "<Wire>" + from + to + "</Wire>";
     }
-    /// `end`: a variable, a number, or `power`; behind '>' what the pin leads to, also `>coil`.
+    /// Of a label, which the network has.
+    std::string label(const std::string& name) {
+        const std::string id = std::to_string(++count), word = "<Label Name=\"" + name + "\"/>";
+        parts += "<Access Scope=\"Label\" UId=\"" + id + "\">" + word + "</Access>";
+        labels += "<LabelDeclaration UId=\"99\">" + word + "</LabelDeclaration>";
+        return "<IdentCon UId=\"" + id + "\"/>";
+    }
+    /// `end`: a variable, a number, or `power`; behind '>' what the pin leads to, also `>coil`,
+    /// behind '@' a label.
     void connect(const std::string& name, const std::string& end) {
         if (end == "power") return wire(pin("8", "out"), pin("9", name));
+        if (end[0] == '@') return wire(label(end.substr(1)), pin("9", name));
         if (end[0] != '>') return wire(access(end), pin("9", name));
         if (end != ">coil") return wire(pin("9", name), access(end.substr(1)));
         wire(pin("9", name), pin("10", "in"));
@@ -74,8 +83,8 @@ void write_block(const std::filesystem::path& file, const Net& net) {
         << members
         << "</Section></Sections></Interface><Name>Block</Name>"
            "<ProgrammingLanguage>LAD</ProgrammingLanguage></AttributeList><ObjectList>"
-           "<SW.Blocks.CompileUnit ID=\"1\"><AttributeList><NetworkSource><FlgNet><Parts>"
-        << net.parts << "</Parts><Wires>" << net.wires
+           "<SW.Blocks.CompileUnit ID=\"1\"><AttributeList><NetworkSource><FlgNet><Labels>"
+        << net.labels << "</Labels><Parts>" << net.parts << "</Parts><Wires>" << net.wires
         << "</Wires></FlgNet></NetworkSource></AttributeList></SW.Blocks.CompileUnit>"
            "</ObjectList></SW.Blocks.FB></Document>\n";
 }
@@ -135,6 +144,11 @@ TEST_CASE("inputs that count by their places do so by their names, in whatever o
           "IF #a THEN\n#z := #x - #y;\nEND_IF\n");
     CHECK(read(part("Sel", type), {{"in1", "y"}, {"in0", "x"}, {"g", "b"}, {"out", ">z"}}) ==
           "#z := SEL(#b, #x, #y);\n");
+}
+
+TEST_CASE("a jump has a label, and goes to it where power is") {
+    CHECK(read(part("Jump"), {{"in", "power"}, {"label", "@M001"}}) ==
+          "M001: ;\nIF #a THEN\nGOTO M001;\nEND_IF\n");
 }
 
 TEST_CASE("a block whose name ends as that of a part is called as others are") {

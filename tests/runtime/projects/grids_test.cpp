@@ -150,5 +150,17 @@ TEST_CASE("what a ladder cannot say is told at its place") {
           "5: 'wheel' of a ladder is not supported (network 1, wheel )\n");
 }
 
+TEST_CASE("an action block leads on what leads to it") {
+    const std::string block =
+        "<actionblock position=\"topbottom\"><input qualifier=\"N\"/>"
+        "<output name=\"timer\"/></actionblock>";
+    CHECK(text_of(network(row(block + coil("d")))) == "timer();\nd := TRUE;\nEND_PROGRAM\n");
+    CHECK(text_of(network(row(contact("a") + block + coil("d")))) ==
+          "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN\ntimer();\nEND_IF\n"
+          "d := _wire1;\nEND_PROGRAM\n");
+    CHECK(text_of(network(row(contact("a") + block + "<empty/>"))) ==
+          "IF a THEN\ntimer();\nEND_IF\nEND_PROGRAM\n");
+}
+
 }  // namespace
 }  // namespace lineshaft::projects::grids

@@ -236,3 +236,28 @@ TEST_CASE("of several libraries one that the project refers to is meant", "[st][
     CHECK(compiled_with("SM3_Basic", "positive") == "");
     CHECK(compiled_with("SM3_Basic", "MC_Positive_Direction").find("L0904") != std::string::npos);
 }
+
+TEST_CASE("a block that is mostly another's may be of a library that is not here",
+          "[st][libraries]") {
+    const auto project = file("a.plcproj", "one\ntwo\n");
+    const auto source = file("a.TcPOU",
+                             "PROGRAM p VAR r : FB_SoERead; go, e : BOOL; v : UINT; END_VAR\n"
+                             "r(bExecute := go, nIdn := 32770, pDstBuf := ADR(v), cbBufLen := 2);\n"
+                             "e := r.bError; END_PROGRAM\n");
+    const auto told_with = [&](const std::vector<std::string>& references) {
+        Diagnostics out;
+        st::Options options;
+        for (const std::string& name : references)
+            options.references.push_back({name, {project, 1, 1}});
+        st::compile({source}, standard_blocks(), out, options);
+        return out.render();
+    };
+    CHECK(
+        told_with({"Tc2_MC2", "Tc2_Drive"})
+            .find("a name that nobody declares may be of libraries that are not here: Tc2_Drive") !=
+        std::string::npos);
+    CHECK(told_with({"Tc2_MC2", "Tc2_Drive"}).find("L0907") == std::string::npos);
+    CHECK(told_with({"Tc2_MC2_Drive", "Tc2_Drive"}).find("has no argument 'nIdn'") !=
+          std::string::npos);
+    CHECK(told_with({"Tc2_MC2"}).find("has no argument 'nIdn'") != std::string::npos);
+}
