@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/mixed_signs.hpp"
 #include "runtime/st/check/nodes.hpp"
@@ -51,6 +54,13 @@ bool mixes_signs_of_64(const Expression& e) {
     const bool are_integers = a.kind == Kind::integer && b.kind == Kind::integer;
     return e.place.dialect().is_loose && are_integers && a.is_signed != b.is_signed &&
            (a.is_unsigned_64() || b.is_unsigned_64());
+}
+
+/// `1.0E300` beside a REAL: CODESYS reckons both as LREALs.
+bool is_beyond_single(const Expression& e, const Type& other) {
+    return is_single(other) && e.kind == E::constant && e.type->is_real() &&
+           e.place.dialect().real_literals_are_lreal &&
+           std::abs(e.constant.real) > double{std::numeric_limits<float>::max()};
 }
 
 /// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
@@ -116,6 +126,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         return typed.kind == Kind::integer ? common_type(typed, real_type) : nullptr;
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
+    if (is_beyond_single(*left, b) || is_beyond_single(*right, a)) common = &lreal_type;
     if (const Type* wider =
             a.is_any() ? wider_for(*left, b, expected) : wider_for(*right, a, expected))
         if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;
