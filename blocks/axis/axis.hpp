@@ -141,7 +141,9 @@ struct Axis {
     std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;   ///< what MC_Power wants
     std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
-    Shortage shortage;          ///< of the last sync_limits
+    std::int64_t powered_in = nowhere;  ///< scan in which it got power: what that takes up was
+                                        ///< sent without it
+    Shortage shortage;                  ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;

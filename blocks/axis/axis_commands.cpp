@@ -129,6 +129,7 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
         abort_all(context);
         state = AxisState::disabled;
     } else if (doing == Doing::holding) {
+        if (state == AxisState::disabled) powered_in = scan_index;
         come_to_rest(context);
     }
 }

@@ -46,6 +46,8 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
                              request.command == Command::cam_out;
     if (doing == Doing::following_set_points && is_of_slave)
         return tell(job, Progress::failed, MotionError::wrong_state);
+    if (powered_in == scan_index && !next_state(request.command, AxisState::disabled))
+        return tell(job, Progress::failed, MotionError::axis_disabled);
     if ((!waits || is_phasing(request.command)) && !next_state(request.command, state))
         return tell(job, Progress::failed, refusal());
     if (request.command == Command::reset && state == AxisState::error_stop &&

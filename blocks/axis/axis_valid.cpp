@@ -199,9 +199,10 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
     return !axis.misfit({}) && motions_are_valid(axis, machine) && is_valid(axis.active, machine) &&
            is_valid(axis.added, machine) && is_valid(axis.phased, machine) &&
            is_valid(axis.overriding, machine) && machine.is_task(axis.task) &&
-           is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
-           machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) &&
-           is_valid(axis.shortage) && is_count(axis.scan_interval) && is_count(axis.renamed) &&
+           is_count(axis.scan_index) && axis.powered_in >= nowhere &&
+           machine.is_moment(axis.scan_time) && machine.is_moment(axis.shown.time) &&
+           machine.is_moment(axis.led_at) && is_valid(axis.shortage) &&
+           is_count(axis.scan_interval) && is_count(axis.renamed) &&
            is_count(axis.trigger_aborts) && is_count(axis.commands) &&
            counts_are_valid(axis, machine) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
