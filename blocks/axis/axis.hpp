@@ -334,7 +334,8 @@ struct Axis {
     void take_up(const Context& context, const Scan& now);
     void take(const Context& context, const Moment& at, Job& job);
     void carry_out(const Context& context, const Moment& at, Job& job);
-    void change(const Context& context, const Moment& at, Running& running, const Job& job);
+    void change(const Context& context, const Moment& at, Running& running, Job& job);
+    void let_go(const Context& context, const Moment& at, Job& job);
     Progress begun() const;
     bool is_endless() const;
     void wait(const Context& context, const Moment& at, Job& job);

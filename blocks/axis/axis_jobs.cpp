@@ -85,8 +85,10 @@ void Axis::carry_out(const Context& context, const Moment& at, Job& job) {
 }
 
 /// Continuous update, or the end of MC_Stop's Execute.
-void Axis::change(const Context& context, const Moment& at, Running& running, const Job& job) {
+void Axis::change(const Context& context, const Moment& at, Running& running, Job& job) {
     const Request before = running.request;
+    if (job.request.command == Command::halt && before.command != Command::halt)
+        return let_go(context, at, job);
     running.request = job.request;
     if (job.request.command == Command::stop) {
         if (running.told_end == 0 || job.request.holds != 0) return;
@@ -109,6 +111,15 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         blend(context, at);
     }
     tell(context, running, keeps_gear(context) ? Progress::reached : begun());
+}
+
+/// The motion under way is to end as by MC_Halt. Where that fails it goes on, and nobody has it.
+void Axis::let_go(const Context& context, const Moment& at, Job& job) {
+    Running before = active;
+    before.told_end = 1;
+    active = {};
+    begin(context, at, job);
+    if (!active.exists()) active = before;
 }
 
 /// StartSync: a slave may leave to meet its master at once, or for its cam.

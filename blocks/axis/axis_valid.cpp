@@ -183,6 +183,7 @@ bool is_valid(const Request& request, const KeptState& machine) {
         !is_one_of(request.mode, BufferMode::blending_high) ||
         !is_one_of(request.direction, MoveDirection::current) ||
         !is_one_of(request.homing, HomingMode::signalled) ||
+        !is_one_of(request.reference, Referencing::unknown) ||
         !is_one_of(request.rules, CommandRules::softmotion) || !is_valid(request.coupling, machine))
         return false;
     const std::int64_t table = CamTableId::of(request.coupling.cam).table;

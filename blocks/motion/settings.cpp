@@ -9,6 +9,8 @@ namespace {
 constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcOnSignal",
                                                 "mcRelative", "mcOther"};
 
+constexpr std::string_view reference_names[] = {"unchanged", "known", "unknown"};
+
 }  // namespace
 
 std::span<const Field> SetPosition::fields() {
@@ -17,9 +19,10 @@ std::span<const Field> SetPosition::fields() {
                                 input("Relative", &SetPosition::relative, "", "Position is added"),
                                 pin::execution_mode()},
                                pin::done("the position is set"));
-        made.push_back(local("Homes", &CommandBlock::pins, &Request::homes, "",
-                             "1: the position is known then, and an absolute move goes to its "
-                             "Position as it is now, as Siemens homes"));
+        made.push_back(local("Reference", &CommandBlock::pins, &Request::reference, "",
+                             "known: the axis is homed then, and an absolute move goes to its "
+                             "Position as it is now, as Siemens homes; unknown: it is not homed")
+                           .one_of(reference_names));
         return made;
     }();
     return table;
