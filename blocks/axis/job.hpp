@@ -174,7 +174,8 @@ std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 /// come.
 enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
-/// Of MC_SetPosition: what becomes of the axis being homed.
+/// Of MC_SetPosition and MC_Home: what becomes of the axis being homed. An MC_Home that leaves it
+/// unchanged searches a signal alone: the position stays, too.
 enum class Referencing : std::int64_t { unchanged, known, unknown };
 
 /// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
@@ -191,7 +192,7 @@ struct Request {
     std::int64_t holds = 0;     ///< Execute of MC_Stop, Enable of MC_MotionInPosition
     std::int64_t halts = 0;     ///< of MC_Phasing: where the shift can come to rest
     std::int64_t relative = 0;  ///< of MC_SetPosition
-    Referencing reference = Referencing::unchanged;  ///< of MC_SetPosition
+    Referencing reference = Referencing::unchanged;  ///< of MC_SetPosition, MC_Home
     std::int64_t jogs = 0;                           ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater
     CommandRules rules = CommandRules::plcopen;

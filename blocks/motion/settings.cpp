@@ -90,15 +90,21 @@ void SetOverride::scan(const Scan& now, const Context& context) {
 }
 
 std::span<const Field> Home::fields() {
-    static const auto table = pin::table(
-        {pin::position("that is known then"),
-         input("HomingMode", &Home::mode, "",
-               "how; mcOther, which stands for modes of other controllers, is refused")
-             .one_of(home_mode_names),
-         input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
-         pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk(),
-         pin::buffer_mode()},
-        pin::done("the position is known"));
+    static const auto table = [] {
+        auto made = pin::table(
+            {pin::position("that is known then"),
+             input("HomingMode", &Home::mode, "",
+                   "how; mcOther, which stands for modes of other controllers, is refused")
+                 .one_of(home_mode_names),
+             input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
+             pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(),
+             pin::jerk(), pin::buffer_mode()},
+            pin::done("the position is known"));
+        made.push_back(local("Reference", &CommandBlock::pins, &Request::reference, "",
+                             "unchanged: Signal is searched, and the position stays")
+                           .one_of(reference_names));
+        return made;
+    }();
     return table;
 }
 
