@@ -56,6 +56,7 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X16 := axis.software_limits AND axis.position >= axis.highest_position;
     word.%X21 := axis.state = synchronized_motion AND axis.synchronization <> in_sync;
     word.%X22 := axis.state = synchronized_motion AND axis.synchronization = in_sync;
+    word.%X23 := axis.superimposed >= 0;
     "AXIS_REF.StatusWord" := word;
 END_FUNCTION
 
