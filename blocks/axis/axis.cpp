@@ -322,7 +322,8 @@ bool Axis::is_held() const {
 }
 
 void Axis::end_done(const Context& context) {
-    homed = homed || active.request.command == Command::home;
+    const bool is_found = active.request.reference == Referencing::known;
+    homed = homed || (active.request.command == Command::home && is_found);
     end(context, active, Progress::done);
 }
 

@@ -141,7 +141,9 @@ struct Axis {
     std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;   ///< what MC_Power wants
     std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
-    Shortage shortage;          ///< of the last sync_limits
+    std::int64_t powered_in = nowhere;  ///< scan in which it got power: what that takes up was
+                                        ///< sent without it
+    Shortage shortage;                  ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
@@ -332,7 +334,8 @@ struct Axis {
     void take_up(const Context& context, const Scan& now);
     void take(const Context& context, const Moment& at, Job& job);
     void carry_out(const Context& context, const Moment& at, Job& job);
-    void change(const Context& context, const Moment& at, Running& running, const Job& job);
+    void change(const Context& context, const Moment& at, Running& running, Job& job);
+    void let_go(const Context& context, const Moment& at, Job& job);
     Progress begun() const;
     bool is_endless() const;
     void wait(const Context& context, const Moment& at, Job& job);

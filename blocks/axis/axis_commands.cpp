@@ -129,6 +129,7 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
         abort_all(context);
         state = AxisState::disabled;
     } else if (doing == Doing::holding) {
+        if (state == AxisState::disabled) powered_in = scan_index;
         come_to_rest(context);
     }
 }
@@ -216,9 +217,9 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     relocated += by;
     goal += by;
     origin += by;
-    const bool homes = request.homes != 0;
-    homed = homed || homes;
-    if (homes && active.exists() && active.request.command == Command::move_absolute) {
+    const bool is_known = request.reference == Referencing::known;
+    homed = is_known || (homed && request.reference == Referencing::unchanged);
+    if (is_known && active.exists() && active.request.command == Command::move_absolute) {
         goal -= by;
         replan(context, at);
     } else if (queue.first != nowhere) {

@@ -46,6 +46,8 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
                              request.command == Command::cam_out;
     if (doing == Doing::following_set_points && is_of_slave)
         return tell(job, Progress::failed, MotionError::wrong_state);
+    if (powered_in == scan_index && !next_state(request.command, AxisState::disabled))
+        return tell(job, Progress::failed, MotionError::axis_disabled);
     if ((!waits || is_phasing(request.command)) && !next_state(request.command, state))
         return tell(job, Progress::failed, refusal());
     if (request.command == Command::reset && state == AxisState::error_stop &&
@@ -83,8 +85,10 @@ void Axis::carry_out(const Context& context, const Moment& at, Job& job) {
 }
 
 /// Continuous update, or the end of MC_Stop's Execute.
-void Axis::change(const Context& context, const Moment& at, Running& running, const Job& job) {
+void Axis::change(const Context& context, const Moment& at, Running& running, Job& job) {
     const Request before = running.request;
+    if (job.request.command == Command::halt && before.command != Command::halt)
+        return let_go(context, at, job);
     running.request = job.request;
     if (job.request.command == Command::stop) {
         if (running.told_end == 0 || job.request.holds != 0) return;
@@ -107,6 +111,15 @@ void Axis::change(const Context& context, const Moment& at, Running& running, co
         blend(context, at);
     }
     tell(context, running, keeps_gear(context) ? Progress::reached : begun());
+}
+
+/// The motion under way is to end as by MC_Halt. Where that fails it goes on, and nobody has it.
+void Axis::let_go(const Context& context, const Moment& at, Job& job) {
+    Running before = active;
+    before.told_end = 1;
+    active = {};
+    begin(context, at, job);
+    if (!active.exists()) active = before;
 }
 
 /// StartSync: a slave may leave to meet its master at once, or for its cam.

@@ -220,6 +220,7 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
         request.homing == HomingMode::on_signal ? Command::move_velocity : Command::stop;
     search.velocity = asked_of(request).velocity;
     if (request.homing == HomingMode::on_signal) return plan_velocity(search, at, from);
+    if (request.reference == Referencing::unchanged) return plan_velocity(search, at, from);
     Start known = from;
     known.state.position = request.position + (is_relative ? from.state.position : 0);
     const MotionError why = plan_velocity(search, at, known);

@@ -45,8 +45,8 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X5 := axis.homed;
     word.%X6 := axis.state = standstill;
     word.%X7 := axis.velocity = 0;
-    word.%X8 := axis.state = discrete_motion;
-    word.%X9 := axis.state = continuous_motion AND axis.jogs = 1;
+    word.%X8 := axis.state = discrete_motion AND axis.jogs = 0;
+    word.%X9 := axis.jogs = 1;
     word.%X10 := axis.state = continuous_motion AND axis.jogs = 0;
     word.%X11 := axis.state = homing;
     word.%X12 := axis.acceleration = 0;
@@ -56,6 +56,7 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X16 := axis.software_limits AND axis.position >= axis.highest_position;
     word.%X21 := axis.state = synchronized_motion AND axis.synchronization <> in_sync;
     word.%X22 := axis.state = synchronized_motion AND axis.synchronization = in_sync;
+    word.%X23 := axis.superimposed >= 0;
     "AXIS_REF.StatusWord" := word;
 END_FUNCTION
 

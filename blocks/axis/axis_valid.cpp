@@ -183,6 +183,7 @@ bool is_valid(const Request& request, const KeptState& machine) {
         !is_one_of(request.mode, BufferMode::blending_high) ||
         !is_one_of(request.direction, MoveDirection::current) ||
         !is_one_of(request.homing, HomingMode::signalled) ||
+        !is_one_of(request.reference, Referencing::unknown) ||
         !is_one_of(request.rules, CommandRules::softmotion) || !is_valid(request.coupling, machine))
         return false;
     const std::int64_t table = CamTableId::of(request.coupling.cam).table;
@@ -199,9 +200,10 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
     return !axis.misfit({}) && motions_are_valid(axis, machine) && is_valid(axis.active, machine) &&
            is_valid(axis.added, machine) && is_valid(axis.phased, machine) &&
            is_valid(axis.overriding, machine) && machine.is_task(axis.task) &&
-           is_count(axis.scan_index) && machine.is_moment(axis.scan_time) &&
-           machine.is_moment(axis.shown.time) && machine.is_moment(axis.led_at) &&
-           is_valid(axis.shortage) && is_count(axis.scan_interval) && is_count(axis.renamed) &&
+           is_count(axis.scan_index) && axis.powered_in >= nowhere &&
+           machine.is_moment(axis.scan_time) && machine.is_moment(axis.shown.time) &&
+           machine.is_moment(axis.led_at) && is_valid(axis.shortage) &&
+           is_count(axis.scan_interval) && is_count(axis.renamed) &&
            is_count(axis.trigger_aborts) && is_count(axis.commands) &&
            counts_are_valid(axis, machine) && masters_are_valid(axis, machine) &&
            steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));

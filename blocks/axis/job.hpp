@@ -174,6 +174,10 @@ std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 /// come.
 enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
+/// Of MC_SetPosition and MC_Home: what becomes of the axis being homed. An MC_Home that leaves it
+/// unchanged searches a signal alone: the position stays, too.
+enum class Referencing : std::int64_t { unchanged, known, unknown };
+
 /// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
 struct Request {
     Command command = Command::none;
@@ -185,11 +189,11 @@ struct Request {
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
-    std::int64_t holds = 0;         ///< Execute of MC_Stop, Enable of MC_MotionInPosition
-    std::int64_t halts = 0;         ///< of MC_Phasing: where the shift can come to rest
-    std::int64_t relative = 0;      ///< of MC_SetPosition
-    std::int64_t homes = 0;         ///< of MC_SetPosition: the position is known then
-    std::int64_t jogs = 0;          ///< of MC_MoveVelocity: MC_MoveJog has it
+    std::int64_t holds = 0;     ///< Execute of MC_Stop, Enable of MC_MotionInPosition
+    std::int64_t halts = 0;     ///< of MC_Phasing: where the shift can come to rest
+    std::int64_t relative = 0;  ///< of MC_SetPosition
+    Referencing reference = Referencing::unchanged;  ///< of MC_SetPosition, MC_Home
+    std::int64_t jogs = 0;                           ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater
     CommandRules rules = CommandRules::plcopen;
     std::int64_t parameter = 0;  ///< number, of MC_WriteParameter and MC_WriteBoolParameter

@@ -61,6 +61,7 @@ void CommandBlock::start(const Scan& now, const Context& context) {
 Request CommandBlock::updated() const {
     Request asked = pins;
     asked.mode = job.request.mode;
+    if (ends) asked.command = Command::halt;
     return asked;
 }
 
@@ -153,6 +154,12 @@ Field continuous_update() {
         "ContinuousUpdate", &CommandBlock::continuous_update, "",
         "pins that change count at once, if it is true at the edge, until it goes false or "
         "the command ends");
+}
+
+Field ends() {
+    return local("Ends", &CommandBlock::ends, "",
+                 "with ContinuousUpdate: what the command has begun, and nothing else, comes to "
+                 "standstill as by MC_Halt");
 }
 
 Field position(std::string_view doc) {

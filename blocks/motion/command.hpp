@@ -45,6 +45,7 @@ struct CommandBlock : CommandState {
     std::int64_t axis = nowhere;
     bool continuous_update = false;
     bool updating = false;  ///< ContinuousUpdate, from the edge on
+    bool ends = false;      ///< with it: what it has begun, and nothing else, brakes as by MC_Halt
     Request pins;
     Job job;
 
@@ -105,6 +106,7 @@ namespace pin {
 Field axis();
 Field execute();
 Field continuous_update();
+Field ends();
 Field position(std::string_view doc);
 Field distance();
 Field velocity(std::string_view doc = "greatest; below 0: the axis' own");

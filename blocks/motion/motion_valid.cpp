@@ -31,7 +31,7 @@ bool is_valid(const CommandState& command) {
 
 bool is_valid(const CommandBlock& command, const KeptState& machine) {
     return is_valid(static_cast<const CommandState&>(command)) &&
-           are_booleans(command.continuous_update, command.updating) &&
+           are_booleans(command.continuous_update, command.updating, command.ends) &&
            is_valid(command.pins, machine) && is_valid(command.job, machine) &&
            (!machine.is_live || is_where_it_says(command.job, machine));
 }

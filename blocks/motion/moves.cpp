@@ -34,6 +34,8 @@ std::span<const Field> velocity_fields() {
             reached("InVelocity", "the velocity is reached"));
         made.push_back(
             local("Jogs", &CommandBlock::pins, &Request::jogs, "", "1: it is that of MC_MoveJog"));
+        made.push_back(ends());
+        made.push_back(local("Ended", &CommandBlock::done, "", "by Ends: the axis stands"));
         return made;
     }();
     return fields;

@@ -9,6 +9,8 @@ namespace {
 constexpr std::string_view home_mode_names[] = {"mcDirect", "mcToPosition", "mcOnSignal",
                                                 "mcRelative", "mcOther"};
 
+constexpr std::string_view reference_names[] = {"unchanged", "known", "unknown"};
+
 }  // namespace
 
 std::span<const Field> SetPosition::fields() {
@@ -17,9 +19,10 @@ std::span<const Field> SetPosition::fields() {
                                 input("Relative", &SetPosition::relative, "", "Position is added"),
                                 pin::execution_mode()},
                                pin::done("the position is set"));
-        made.push_back(local("Homes", &CommandBlock::pins, &Request::homes, "",
-                             "1: the position is known then, and an absolute move goes to its "
-                             "Position as it is now, as Siemens homes"));
+        made.push_back(local("Reference", &CommandBlock::pins, &Request::reference, "",
+                             "known: the axis is homed then, and an absolute move goes to its "
+                             "Position as it is now, as Siemens homes; unknown: it is not homed")
+                           .one_of(reference_names));
         return made;
     }();
     return table;
@@ -87,15 +90,21 @@ void SetOverride::scan(const Scan& now, const Context& context) {
 }
 
 std::span<const Field> Home::fields() {
-    static const auto table = pin::table(
-        {pin::position("that is known then"),
-         input("HomingMode", &Home::mode, "",
-               "how; mcOther, which stands for modes of other controllers, is refused")
-             .one_of(home_mode_names),
-         input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
-         pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(), pin::jerk(),
-         pin::buffer_mode()},
-        pin::done("the position is known"));
+    static const auto table = [] {
+        auto made = pin::table(
+            {pin::position("that is known then"),
+             input("HomingMode", &Home::mode, "",
+                   "how; mcOther, which stands for modes of other controllers, is refused")
+                 .one_of(home_mode_names),
+             input("Signal", &Home::signal, "", "of a switch, for mcOnSignal: its rising edge"),
+             pin::velocity(), pin::direction(), pin::acceleration(), pin::deceleration(),
+             pin::jerk(), pin::buffer_mode()},
+            pin::done("the position is known"));
+        made.push_back(local("Reference", &CommandBlock::pins, &Request::reference, "",
+                             "unchanged: Signal is searched, and the position stays")
+                           .one_of(reference_names));
+        return made;
+    }();
     return table;
 }
 

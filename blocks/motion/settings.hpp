@@ -61,7 +61,10 @@ struct Home : CommandBlock {
     static constexpr std::string_view type = "MC_Home";
     static constexpr std::string_view doc = "makes the position of an axis known";
     static std::span<const Field> fields();
-    constexpr Home() { pins.command = Command::home; }
+    constexpr Home() {
+        pins.command = Command::home;
+        pins.reference = Referencing::known;
+    }
     void scan(const Scan& now, const Context& context);
 
   private:

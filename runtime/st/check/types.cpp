@@ -243,9 +243,9 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     }
     const bool is_from_zero = text.place.dialect().enumerations_begin_at_zero && type.name_of(0);
     if (!is_from_zero && !type.numbers.empty()) type.initial.integer = type.numbers.front();
-    const bool is_of_library = text.place.source->is_library();
-    type.is_unchecked =
-        !text.is_strict && (is_of_library || text.place.dialect().enumerations_are_numbers);
+    const bool takes_numbers =
+        text.place.dialect().enumerations_are_numbers || text.place.source->is_library();
+    type.is_unchecked = takes_numbers && !text.is_strict;
     const bool is_named_first = has_base && text.name.place.begin == text.place.begin;
     if (is_named_first && !text.place.dialect().is_loose && !type.numbers.empty())
         become_named_values(type, base->plain());

@@ -197,6 +197,21 @@ Slot unless_by_zero(Writing& w, Slot b, Reckon reckon) {
     return to;
 }
 
+/// A field of an instance by its handle, in a vendor's library, where AXIS_REFs are structures.
+bool may_be_of_none(const Expression& e) {
+    const Expression& of = *e.operands[0];
+    return of.kind == E::converted && of.operands[0]->type->kind == Kind::handle &&
+           e.place.source->is_library();
+}
+
+/// 0 where no instance has been given.
+Slot field_of_any(Writing& w, const Expression& e) {
+    const Slot address = w.emit(Op::address_of_number, none, value(w, *e.operands[0]->operands[0]));
+    return unless_by_zero(w, address, [&](Slot to) {
+        return load(w, part(w, {Mode::address, 0, address, 0}, *e.variable), to);
+    });
+}
+
 Slot binary(Writing& w, const Expression& e, Slot wanted) {
     if (e.op >= Word::less && e.op <= Word::unequal) return comparison(w, e, wanted);
     if (e.op == Word::and_then_ || e.op == Word::or_else_) return lazy(w, e);
@@ -263,6 +278,7 @@ Slot value(Writing& w, const Expression& e, Slot wanted) {
             if (e.is_character()) return character(w, e, wanted);
             return load(w, locate(w, e), wanted);
         case E::member:
+            if (may_be_of_none(e)) return field_of_any(w, e);
             update_timer(w, e);
             if (is_finer_than_ms(e.operands[0]->type, *e.type, e.place))
                 return whole_ms(w, load(w, locate(w, e)), e.place, wanted);
