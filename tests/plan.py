@@ -197,9 +197,13 @@ def check_files(lineshaft, folder):
         code, text, err = run(lineshaft, str(name))
         if code != 2 or text or message not in err:
             yield f"{name}: exit code {code}, said {err!r}"
-    code, text, err = run(lineshaft, str(good), "-o", str(folder / "none" / "out.csv"))
-    if code != 2 or not re.search("there is no folder '.*none' to write '.*out.csv' to", err):
+    made = folder / "none" / "deep" / "out.csv"
+    code, text, err = run(lineshaft, str(good), "-o", str(made))
+    if code != 2 or made.read_text(encoding="utf-8") != wanted:
         yield f"an output in a folder that is not there: exit code {code}, said {err!r}"
+    code, text, err = run(lineshaft, str(good), "-o", str(made / "deep" / "out.csv"))
+    if code != 2 or not re.search("cannot make the folder .*Not a directory", err):
+        yield f"an output in what is no folder: exit code {code}, said {err!r}"
 
 
 def check_dialogue(lineshaft):
@@ -286,12 +290,12 @@ def check_short_paths(lineshaft):
         if code != 0 or ok not in (["1", ""], ["0", "not_finite"]) or (length == "1e-30" and ok[0] == "0"):
             yield f"--path, a line of {length}: exit code {code}, {out!r}, {err!r}"
     rows = {}
-    for unit in ("", " mm"):
+    for unit in ("", " mm", "mm"):
         code, rows[unit], err = run(lineshaft, *limits, text=f"position1,position2\n0{unit},0\n3{unit},4\n")
         if code != 0:
             yield f"--path, with '{unit}': exit code {code}, said {err!r}"
-    if rows[""] != rows[" mm"]:
-        yield f"--path: a unit changes {rows['']!r} to {rows[' mm']!r}"
+    if not rows[""] == rows[" mm"] == rows["mm"]:
+        yield f"--path: a unit changes {rows['']!r} to {rows[' mm']!r} and {rows['mm']!r}"
     if run(lineshaft, *limits, text="position1\n0 mm\n3 m\n")[0] != 2:
         yield "--path: two units in a column are accepted"
     for by in (signal.SIGTERM, signal.SIGINT):

@@ -161,8 +161,8 @@ def folders(c):
         assert "the run stopped at 0 s" in result.stderr, result.stderr
         c.run("run", "program.yaml", *FOREVER, option, "closed", expect=3,
               says="cannot write 'closed': it is a directory")
-        result = c.run("run", "program.yaml", *FOREVER, option, "nowhere/t.csv", expect=2,
-                       says="error[L0502]: there is no folder 'nowhere' to write 'nowhere/t.csv' to")
+        result = c.run("run", "program.yaml", *FOREVER, option, "closed/deep/t.csv", expect=2, preexec_fn=nobody,
+                       says="error[L0502]: cannot make the folder 'closed/deep': Permission denied")
         assert result.stderr.count("L0502") == 1, result.stderr  # the files beside it are not told
     assert not any(c.path("closed").iterdir())
     c.path("dark").mkdir()

@@ -41,7 +41,8 @@ std::span<const Field> Pto::fields() {
         input("update_count", &P::update_count, "", "false: it keeps the last count"),
         input("control", &P::control, "", "SMB67 in place of these four, if 0 or more")
             .at_most(255),
-        input("start_rate", &P::start_rate, "Hz", "rate of a single segment, or at its start")
+        input("start_rate", &P::start_rate, "Hz",
+              "rate of a single segment, up to 65535 Hz, or at the start of the one segment")
             .at_least(1)
             .at_most(most_multi),
         input("end_rate", &P::end_rate, "Hz", "multi-segment: rate at the end of the one segment")

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include "runtime/model/address.hpp"
+#include "runtime/names/left_out.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
+#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/types/types.hpp"
 
 namespace lineshaft {
@@ -102,8 +104,21 @@ void Net::unknown_port(const Reader& read, const Node& node, const Instance& blo
         return read.fail(code::unknown_port, node,
                          fmt::format("'{}.{}' is more than one value", block.name, port),
                          fmt::format("name one of them, such as {}.{}", block.name, *part));
+    if (refuse_left_out(read, node, block, port)) return;
     read.fail(code::unknown_port, node, fmt::format("{} has no port '{}'", block.described(), port),
               suggest(misspelt(port), names, block.name + "."));
+}
+
+bool refuse_left_out(const Reader& read, const Node& node, const Instance& block,
+                     std::string_view port) {
+    if (st::find_shortened(*block.type, port).empty()) return false;
+    read.fail(code::unknown_port, node,
+              fmt::format("'{}.{}' is not known here: of a block's arrays {} elements are, of its "
+                          "instances and structures {} parts",
+                          block.name, port, st::most_elements, st::most_parts),
+              fmt::format("give {} a variable of its own with that value, and name it",
+                          block.type->name));
+    return true;
 }
 
 std::string_view Net::misspelt(std::string_view port) const {

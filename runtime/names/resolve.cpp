@@ -1,6 +1,7 @@
 #include "runtime/names/resolve.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -59,6 +60,52 @@ void resolve_inputs(Resolving& to) {
     }
 }
 
+/// The fields that an input is wired to.
+std::vector<Port> targets_of(const Resolving& to, const InputNode& input) {
+    std::vector<Port> targets;
+    for (const Assignment& assignment : to.assignments)
+        if (assignment.wire && assignment.wire->signal == "inputs." + input.name)
+            targets.push_back(to.net.port(assignment.instance, *assignment.field));
+    return targets;
+}
+
+/// The number is as many of that unit, and that is a whole one.
+std::optional<std::int64_t> whole_in(const Net& net, const InputNode& input, const Unit& unit) {
+    const Unit& given = net.unit(input.signal->unit);
+    if (!given.same_dimension(unit)) return {};
+    const double number = convert(as_real(input.initial), given, unit);
+    if (!(std::abs(number) < 0x1p53) || number != std::floor(number)) return {};
+    return static_cast<std::int64_t>(number);
+}
+
+/// What is written as 20 is a real number to a pin that takes these, and what is written as 1 kHz a
+/// whole one to a pin that counts Hz.
+void take_types(Resolving& to) {
+    for (InputNode& input : to.net.inputs) {
+        const auto targets = targets_of(to, input);
+        const auto all = [&](const auto& holds) { return std::ranges::all_of(targets, holds); };
+        if (!input.signal || targets.empty()) continue;
+        Signal& signal = *input.signal;
+        const Unit& unit = to.net.unit_of(targets.front());
+        if (is_integer(signal.type)) {
+            if (!all([&](Port port) { return to.net.field(port).type == Type::real; })) continue;
+            input.initial = as_real(input.initial);
+            signal.type = Type::real;
+        } else if (signal.type == Type::real && !signal.unit.empty()) {
+            const auto number = whole_in(to.net, input, unit);
+            if (!number || !all([&](Port port) {
+                    return is_integer(to.net.field(port).type) &&
+                           to.net.unit_of(port).text == unit.text;
+                }))
+                continue;
+            input.initial = *number;
+            signal.type = Type::integer;
+            signal.unit = unit.text;
+        }
+        input.field.type = signal.type;
+    }
+}
+
 void resolve_outputs(Resolving& to) {
     for (const auto& [name, shown] : to.program.outputs) {
         OutputNode output{.name = name.text};
@@ -86,6 +133,7 @@ Net resolve(const Program& program, const Catalog& catalog, std::shared_ptr<cons
     resolve_assignments(to);
     resolve_io(to);
     resolve_constants(to);
+    take_types(to);
     resolve_wires(to);
     resolve_outputs(to);
     return std::move(to.net);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/names/left_out.hpp"
 #include "runtime/names/resolve.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
@@ -197,6 +198,7 @@ void refuse_port(Resolving& to, const Instance& block, const Node& key) {
     if (key.text == "on_error")
         return to.read.fail(code::unknown_port, key, message,
                             "it is said of the whole run: run: {for: 2 s, on_error: continue}");
+    if (refuse_left_out(to.read, key, block, key.text)) return;
     std::vector<std::string> settable{"type", "task"};
     for (const Field& f : block.type->fields)
         if (block.type->find_settable(f.name) == &f && f.global.empty())

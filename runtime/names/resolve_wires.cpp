@@ -129,10 +129,12 @@ bool check_unit(const Resolving& to, const Assignment& wire, const Signal& sourc
                 const Unit& given, const Unit& wanted) {
     const bool whole = is_integer(wire.field->type) && given.text != wanted.text;
     if (given.same_dimension(wanted) && !whole) return true;
+    const bool lacks_unit = source.port.instance < 0 && given.text.empty();
     to.read.fail(code::wire_between_dimensions, *wire.value,
                  fmt::format("'{}' is in {}, '{}' takes {}", source.name,
                              given.text.empty() ? "plain numbers" : given.text, wire.field->name,
-                             wanted.text.empty() ? "plain numbers" : wanted.text));
+                             wanted.text.empty() ? "plain numbers" : wanted.text),
+                 lacks_unit ? fmt::format("give the input its unit, {}", wanted.text) : "");
     return false;
 }
 

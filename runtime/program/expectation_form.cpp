@@ -21,8 +21,12 @@ const Form& expected_bounds() {
         {.name = "expected_bounds",
          .what = "an expectation's bounds",
          .doc = "what an expected signal keeps within",
-         .keys = {key<&ExpectPlan::at_least>("at_least", a_value, "lower bound"),
-                  key<&ExpectPlan::at_most>("at_most", a_value, "upper bound")}});
+         .keys = {key<&ExpectPlan::at_least>("at_least", a_value,
+                                             "lower bound; what is smaller by rounding, by four "
+                                             "units in the last place, is let pass"),
+                  key<&ExpectPlan::at_most>("at_most", a_value,
+                                            "upper bound; what is larger by rounding, by four "
+                                            "units in the last place, is let pass")}});
     return form;
 }
 
@@ -160,7 +164,8 @@ const Form& expectation_form() {
                  key<&ExpectPlan::equals>("count", a_value, "with 'rising': how many"),
                  key<&ExpectPlan::equals>("equals", a_value, "with 'always' or 'never': the value"),
                  key<&ExpectPlan::within>("within", a_value,
-                                          "distance from the value, or a percentage of it"),
+                                          "distance from the value, or a percentage of it, with "
+                                          "room for rounding as a bound has; of 0: none"),
                  key<&ExpectPlan::because>("because", a_value.as("the reason"),
                                            "why it is expected, told with the verdict")},
         .rules = {apart("at", {"always", "never", "between", "rising", answer}),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -148,11 +149,23 @@ void Judge::fail(std::size_t index, std::string deviation) {
     verdicts_[index] = {.ok = false, .deviation = std::move(deviation)};
 }
 
+/// What is commanded as 100 may be reached as 100.00000000000001: four units in the last place of a
+/// bound. A value without `within` is meant to the bit, and so is what is excluded.
+static bool is_within(const Expectation& e, const Value& value) {
+    if (compare(value, e.low) >= 0 && compare(value, e.high) <= 0) return true;
+    const double low = as_real(e.low), high = as_real(e.high);
+    if (e.signal.type != Type::real || low == high || e.when == When::excluded) return false;
+    const auto room = [](double bound) {
+        return std::isfinite(bound) ? 4 * std::numeric_limits<double>::epsilon() * std::abs(bound)
+                                    : 0.0;
+    };
+    return as_real(value) >= low - room(low) && as_real(value) <= high + room(high);
+}
+
 void Judge::judge(std::size_t index, std::int64_t time, std::optional<std::int64_t> scan) {
     const Expectation& e = expectations_[index];
     const Value value = e.signal.value();
-    const bool is_within = compare(value, e.low) >= 0 && compare(value, e.high) <= 0;
-    verdicts_[index].ok = is_within != (e.when == When::excluded);
+    verdicts_[index].ok = is_within(e, value) != (e.when == When::excluded);
     if (verdicts_[index].ok) return;
     std::string deviation =
         fmt::format("{} is {} at {}", e.signal.name, e.signal.describe(value), format_time(time));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -118,6 +119,14 @@ std::optional<SignalName> split_signal(std::string_view text) {
     return name;
 }
 
+/// Of `2 mm + 3`, which is no formula, what is wrong with its numbers; of all else nothing.
+static std::string why_not_computed(std::string_view text) {
+    if (!is_digit(text.front()) || text.find_first_of("<>=&|") != text.npos) return {};
+    const auto no_names = [](std::string_view) { return std::optional<Amount>(); };
+    const FormulaResult result = evaluate(text, no_names);
+    return result.name.empty() ? result.error : std::string();
+}
+
 void Reader::fail(const char* code, const Node& node, std::string message, std::string help) const {
     if (node.is_unknown_parameter()) return;
     Diagnostic found{code, node.mark, std::move(message), std::move(help)};
@@ -127,7 +136,13 @@ void Reader::fail(const char* code, const Node& node, std::string message, std::
         std::string better = node.quoted && node.text.starts_with("NOT ")
                                  ? std::string()
                                  : expression_help(node.text);
-        if (!better.empty())
+        const std::string wrong = better.empty() ? std::string() : why_not_computed(node.text);
+        if (!wrong.empty())
+            found = {code::expression_for_a_value,
+                     node.mark,
+                     fmt::format("'{}' cannot be computed: {}", node.text, wrong),
+                     {}};
+        else if (!better.empty())
             found = {code::expression_for_a_value, node.mark,
                      fmt::format("'{}' is an expression", node.text), std::move(better)};
     }
@@ -274,12 +289,16 @@ std::optional<std::int64_t> Reader::time(const Node& node) const {
     }
     const auto ns = to_nanoseconds(*q);
     if (ns && *ns >= 0) return ns;
+    const double nanoseconds = convert(q->number, q->unit, *Unit::parse("ns"));
     if (q->number < 0)
         fail(code::not_a_time, node, fmt::format("'{}' is below 0", node.text));
+    else if (nanoseconds >= static_cast<double>(std::numeric_limits<std::int64_t>::max()))
+        fail(code::not_a_time, node, fmt::format("'{}' is too long", node.text),
+             "times are counted in ns, up to 292 years");
     else
         fail(code::not_a_time, node,
              fmt::format("'{}' is not a whole number of nanoseconds", node.text),
-             "times are counted in ns, up to 292 years");
+             "times are counted in ns");
     return {};
 }
 

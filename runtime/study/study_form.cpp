@@ -238,7 +238,7 @@ const Form& claim_form() {
                                                "over names: CASE is its first signal, "
                                                "CASE.b.q another; mean_relative_error and "
                                                "greatest_relative_error are those of all rows "
-                                               "with a paper's value")
+                                               "with a paper's value but a spread's, and but 0")
                           .must(),
                       key<read_unit>("unit", one_of("a unit", {"%"}), "shown in percent")}}
             .with<&ClaimPlan::bounds>(bounds_form()));

@@ -7,6 +7,7 @@
 
 #include "runtime/model/literal.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/library/shortened.hpp"
 
 namespace lineshaft {
 
@@ -161,6 +162,14 @@ Json field_json(const Field& field, const Fresh& fresh) {
     return out;
 }
 
+std::string shortened_text(const BlockType& type) {
+    if (st::shortened_variables(type).empty()) return {};
+    return fmt::format(
+        "\nnot all of {}\n  of a block's arrays {} elements are known, of its instances and "
+        "structures {} parts\n",
+        fmt::join(st::shortened_variables(type), ", "), st::most_elements, st::most_parts);
+}
+
 }  // namespace
 
 std::string block_text(const BlockType& type) {
@@ -176,6 +185,7 @@ std::string block_text(const BlockType& type) {
         }
         if (!lines.empty()) text += fmt::format("\n{}s\n{}", name_of(direction), lines);
     }
+    text += shortened_text(type);
     for (const TableField& table : type.tables) {
         text +=
             fmt::format("\nlist {}, up to {} rows: {}\n", table.name, table.capacity, table.doc);
@@ -216,6 +226,8 @@ Json block_json(const BlockType& type) {
              {"example", block_example(type)},
              {"fields", Json::array()}};
     for (const Field& f : type.fields) out["fields"].push_back(field_json(f, fresh));
+    if (const auto shortened = st::shortened_variables(type); !shortened.empty())
+        out["shortened"] = shortened;
     for (const TableField& t : type.tables) {
         auto columns = Json::array();
         for (const Field& c : t.columns) {

@@ -179,10 +179,15 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
             out.add(code::output_is_an_input, {}, fmt::format("two outputs would be '{}'", *output),
                     "name another file");
         const std::string folder = missing_folder(*output);
-        if (!folder.empty() && missing.insert(folder).second)
+        if (!folder.empty()) missing.insert(folder);
+    }
+    for (const std::string& folder : missing) {
+        std::error_code failed;
+        if (out.empty()) std::filesystem::create_directories(folder, failed);
+        if (failed)
             out.add(code::unusable_option, {},
-                    fmt::format("there is no folder '{}' to write '{}' to", folder, *output),
-                    "make it, or name another one");
+                    fmt::format("cannot make the folder '{}': {}", folder, failed.message()),
+                    "name another one");
     }
 }
 

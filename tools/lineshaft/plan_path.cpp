@@ -10,6 +10,7 @@
 #include "blocks/group/axes_group.hpp"
 #include "blocks/path/path_cubic.hpp"
 #include "runtime/source/input_file.hpp"
+#include "runtime/source/units.hpp"
 #include "tools/lineshaft/plan_cells.hpp"
 
 namespace lineshaft {
@@ -191,16 +192,18 @@ std::string PathPlanner::read_header(std::string_view text) {
 
 /// A number with the unit that all numbers of its column have, or with none.
 std::string PathPlanner::read_quantity(std::string_view cell, std::size_t column, double& value) {
-    const std::size_t blank = cell.rfind(' ');
-    const bool has_unit =
-        blank != cell.npos && std::isalpha(static_cast<unsigned char>(cell.back())) != 0;
-    const std::string unit(has_unit ? cell.substr(blank + 1) : "");
+    const bool is_word = !cell.empty() && std::isalpha(static_cast<unsigned char>(cell.back()));
+    const std::size_t digit = cell.find_last_of("0123456789."),
+                      end = cell.rfind(' ') != cell.npos ? cell.rfind(' ') : digit + 1;
+    const bool has_unit = is_word && end != 0 && end < cell.size() &&
+                          (cell[end] == ' ' || Unit::parse(std::string(cell.substr(end))));
+    const std::string unit(has_unit ? trimmed(cell.substr(end)) : "");
     units_.resize(columns.size());
     if (units_[column].value_or(unit) != unit)
         return fmt::format("'{}' in column {} has another unit than the rows above", cell,
                            columns[column]);
     units_[column] = unit;
-    return read_number(has_unit ? trimmed(cell.substr(0, blank)) : cell, columns[column], value);
+    return read_number(has_unit ? trimmed(cell.substr(0, end)) : cell, columns[column], value);
 }
 
 /// Of a line that is wrong, too, which path it is of.

@@ -285,6 +285,11 @@ bool is_single(const Type& type) {
     return type.kind == Kind::real && type.bits == 32;
 }
 
+bool makes_lreal_of_literals(const Place& place, const Type* expected) {
+    if (expected && expected->plain().kind == Kind::real) return !is_single(expected->plain());
+    return place.dialect().real_literals_are_lreal;
+}
+
 /// What the text is as a CHAR or a WCHAR; empty: it is not one of these.
 static std::optional<Wide> only_character(const std::string& text, const Type& type) {
     if (type.bits == 16) {

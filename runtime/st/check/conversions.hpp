@@ -11,6 +11,8 @@ inline bool takes_what_others_refuse(const Dialect& dialect) {
 
 /// REAL.
 bool is_single(const Type& type);
+/// `i * 0.1` is an LREAL: where one is due, in CODESYS where no REAL is. Else it is a REAL.
+bool makes_lreal_of_literals(const Place& place, const Type* expected);
 /// An integer without sign goes to a bit string of its width or a wider one.
 bool are_same_pattern(const Type& given, const Type& to);
 /// A constant of another type loses nothing.

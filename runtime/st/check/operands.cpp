@@ -119,9 +119,7 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     const auto real_of = [&](const Type& any, const Type& typed) -> const Type* {
         if (any.kind != Kind::any_real) return nullptr;
         const bool is_number = typed.kind == Kind::integer || counts_bits(typed, any, e.place);
-        if (is_number && e.place.dialect().real_literals_are_lreal &&
-            !(expected && is_single(*expected)))
-            return &lreal_type;
+        if (is_number && makes_lreal_of_literals(e.place, expected)) return &lreal_type;
         if (counts_bits(typed, any, e.place)) return typed.bits < 32 ? &real_type : &lreal_type;
         return typed.kind == Kind::integer ? common_type(typed, real_type) : nullptr;
     };

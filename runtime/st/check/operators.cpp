@@ -321,6 +321,19 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     return counts_ms ? convert(c, e, time_type) : e->type;
 }
 
+bool is_lreal(const Type* type) {
+    return type && type->plain().kind == Kind::real && !is_single(*type);
+}
+
+/// `k * 0.1 < x` and `k * 0.1 + x`, where nothing else is due: an LREAL behind what is reckoned.
+bool goes_with_lreal(Checking& c, Expression& e) {
+    Expression *&left = e.operands[0], *&right = e.operands[1];
+    const bool is_variable = right->kind == E::member || right->kind == E::index ||
+                             (right->kind == E::name && !right->token.quoted &&
+                              find_variable(c, right->token) != nullptr);
+    return left->kind == E::binary && !is_logic(e.op) && is_variable && is_lreal(check(c, right));
+}
+
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
     if (is_comparison(e->op)) take_type_names(c, *e);
@@ -331,7 +344,9 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
         check(c, left, right->type);
     }
     if (is_logic(e->op)) check_masks(c, *e, expected);
+    if (!wanted && goes_with_lreal(c, *e)) wanted = &lreal_type;
     check(c, left, wanted);
+    if (!wanted && is_lreal(left->type)) wanted = left->type;
     check(c, right, is_comparison(e->op) ? left->type : wanted);
     if (!left->type || !right->type) return nullptr;
     if (is_comparison(e->op)) take_null_variant(c, *e);

@@ -153,7 +153,7 @@ const Type* check_standard_function(Checking& c, Expression*& e, const Type* exp
     const bool passes = f.typing == Typing::common || f.typing == Typing::chosen ||
                         (f.typing == Typing::scaled && expected && expected->is_real()) ||
                         (f.typing == Typing::own && expected && expected->kind == Kind::integer) ||
-                        (expected && is_single(*expected) && reckons_as_wanted(f));
+                        (expected && expected->is_real() && reckons_as_wanted(f));
     for (std::size_t i = 0; i < e->arguments.size(); ++i) {
         Expression*& value = e->arguments[i].value;
         const bool is_text =

@@ -206,10 +206,9 @@ bool are_bits(const Expression& call, std::size_t first) {
 const Type& real_of_literals(const Expression& call, std::size_t first, const Type* expected) {
     const auto begin = call.arguments.begin() + static_cast<std::ptrdiff_t>(first);
     const bool is_of_single =
-        (expected && is_single(*expected)) ||
         std::any_of(begin, call.arguments.end(),
                     [](const Argument& argument) { return is_single(*argument.value->type); });
-    const bool is_double = call.place.dialect().real_literals_are_lreal && !is_of_single;
+    const bool is_double = !is_of_single && makes_lreal_of_literals(call.place, expected);
     return is_double ? lreal_type : real_type;
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/types/parameters.hpp"
 
@@ -50,7 +51,9 @@ class FieldWriter {
             8 * std::size_t{at} +
             (variable.is_byte ? variable.byte : 8 * std::size_t{variable.slot});
         const bool was_own = std::exchange(is_own_, is_own_ && variable.section != Section::temp);
-        write(*variable.type, offset, path + std::string(variable.text), direction, variable);
+        const std::string name = path + std::string(variable.text);
+        if (place_ != Place::element) begin_ = name;
+        write(*variable.type, offset, name, direction, variable);
         is_own_ = was_own;
     }
 
@@ -74,6 +77,7 @@ class FieldWriter {
             member.name.place.source && member.name.place.source->is_library() &&
             member.type->kind == Kind::array && member.type->element->kind == Kind::structure;
         if (are_librarys && !has_handle(*member.type)) return;
+        begin_ = member.text;
         write(*member.type, 8 * std::size_t{member.slot}, std::string(member.text),
               pin_of(member, Direction::local), member);
     }
@@ -96,7 +100,21 @@ class FieldWriter {
     }
 
   private:
+    /// Of what is written: a variable of the kind, a part of one, or what stands in an array.
+    enum class Place { own, part, element };
+
+    /// How many there are in those places.
+    struct Count {
+        std::size_t parts = 0, elements = 0;
+
+        void add(Place place) {
+            parts += place == Place::part;
+            elements += place == Place::element;
+        }
+    };
+
     Field& add(std::string name, Direction direction, lineshaft::Type type, std::size_t offset) {
+        fields_.add(place_);
         Field& field = kind_.fields.emplace_back();
         field.name = made_.names.emplace_back(std::move(name));
         field.direction = direction;
@@ -107,40 +125,49 @@ class FieldWriter {
 
     void write(const Type& type, std::size_t offset, const std::string& name, Direction direction,
                const Variable& variable) {
-        if (is_left_out(type)) return;
+        if (is_left_out(type)) return note_cut();
         const auto slot = static_cast<std::uint32_t>(offset / 8);
+        const Place before = std::exchange(place_, place_of_parts(type));
         switch (type.kind) {
             case Kind::array:
                 write_elements(type, offset, name + "[", direction, variable);
-                return;
+                break;
             case Kind::structure:
                 for (const Variable* member : type.members)
                     write(*member, slot, name + ".", pin_of(*member, direction));
-                return;
+                break;
             case Kind::standard:
                 for (const Variable* member : type.members)
                     write_part(*member, slot, name + ".", direction, false);
-                return;
+                break;
             case Kind::block:
                 for (const Variable* member : all_variables(*type.routine))
                     if (member->section != Section::temp)
                         write_part(*member, slot, name + "." + of_base(*type.routine, *member),
                                    direction, is_own(member->section));
-                return;
+                break;
             case Kind::interface:
             case Kind::reference:
             case Kind::union_:
-                return;
+                break;
             case Kind::text:
-                if (kind_.texts.size() < Library::most_parts)
-                    kind_.texts.push_back({made_.names.emplace_back(name), offset});
-                return;
+                texts_.add(place_);
+                kind_.texts.push_back({made_.names.emplace_back(name), offset});
+                break;
             case Kind::handle:
                 write_handle(type, offset, name, direction, variable);
-                return;
+                break;
             default:
                 write_scalar(type, offset, name, direction, variable);
         }
+        place_ = before;
+    }
+
+    Place place_of_parts(const Type& type) const {
+        if (type.kind == Kind::array) return Place::element;
+        const bool has_parts =
+            type.kind == Kind::structure || type.kind == Kind::block || type.kind == Kind::standard;
+        return has_parts ? std::max(place_, Place::part) : place_;
     }
 
     static bool is_own(Section section) {
@@ -157,11 +184,19 @@ class FieldWriter {
         is_own_ = was_own;
     }
 
-    /// Behind `most_parts` only what is given a block of the program is a field, as many again.
+    /// Of elements behind `most_elements` only what is given a block of the program is a field, as
+    /// many again.
     bool is_left_out(const Type& type) const {
-        const std::size_t count = kind_.fields.size();
-        return count >= Library::most_parts &&
-               (count >= 2 * Library::most_parts || !has_handle(type));
+        const Count& count = type.kind == Kind::text ? texts_ : fields_;
+        if (place_ == Place::own) return false;
+        if (place_ == Place::part) return count.parts >= most_parts;
+        return count.elements >= most_elements &&
+               (count.elements >= 2 * most_elements || !has_handle(type));
+    }
+
+    void note_cut() {
+        if (kind_.shortened.empty() || kind_.shortened.back() != begin_)
+            kind_.shortened.push_back(made_.names.emplace_back(begin_));
     }
 
     static bool has_handle(const Type& type) {
@@ -191,7 +226,7 @@ class FieldWriter {
                         Direction direction, const Variable& variable) {
         for (std::int64_t i = array.lower; i <= array.upper;
              ++i, offset += 8 * element_slots(array)) {
-            if (is_left_out(*array.element)) return;
+            if (is_left_out(*array.element)) return note_cut();
             const std::string name = before + std::to_string(i);
             if (array.has_inner)
                 write_elements(*array.element, offset, name + ",", direction, variable);
@@ -249,6 +284,9 @@ class FieldWriter {
     Library::Made& made_;
     KindContext& kind_;
     bool is_own_ = true;  ///< what is written is the kind's own, and given by nobody
+    Place place_ = Place::own;
+    std::string begin_;  ///< the path of the variable that is written, or of the array that has it
+    Count fields_, texts_;
 };
 
 /// Of all that `routine` runs, the blocks of the program that are named.

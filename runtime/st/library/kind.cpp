@@ -10,6 +10,7 @@
 #include "runtime/model/kept_state.hpp"
 #include "runtime/st/library/failed_assertion.hpp"
 #include "runtime/st/library/retained.hpp"
+#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
@@ -365,6 +366,19 @@ std::string_view find_text(const BlockType& kind, std::string_view name) {
     const auto it = std::ranges::find_if(
         texts, [&](const TextVariable& text) { return same_letters(text.name, name); });
     return it == texts.end() ? std::string_view() : it->name;
+}
+
+std::span<const std::string_view> shortened_variables(const BlockType& kind) {
+    const KindContext* context = context_of(kind);
+    return context ? context->shortened : std::span<const std::string_view>();
+}
+
+std::string_view find_shortened(const BlockType& kind, std::string_view field) {
+    for (const std::string_view path : shortened_variables(kind))
+        if (same_letters(field.substr(0, path.size()), path) &&
+            (field.size() == path.size() || field[path.size()] == '[' || field[path.size()] == '.'))
+            return path;
+    return {};
 }
 
 const KindContext* context_of(const BlockType& kind) {

@@ -21,6 +21,7 @@ struct KindContext {
     std::string name, doc;
     std::vector<Field> fields;
     std::vector<TextVariable> texts;
+    std::vector<std::string_view> shortened;  ///< see shortened_variables
     Retention retention = Retention::unsaid;  ///< of a data block: what its header says
     struct Check {
         std::uint32_t slot;

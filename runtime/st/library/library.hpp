@@ -46,10 +46,11 @@ struct FaultPlace {
 ///
 /// Fields of a kind: VAR_INPUT CONSTANT is a parameter, VAR_INPUT an input, VAR_OUTPUT an output,
 /// VAR and VAR_TEMP a local. Only scalars are fields (a STRING is none); of arrays, structures and
-/// instances each part is one, by its path: `table[3].x`, `delay.ET`, up to `most_parts` of a
-/// kind. REAL and LREAL are real, TIME an integer of unit ns, all integers and bit strings integers
-/// (a ULINT from 2^63 on shows as negative), with the limits of their type. `{unit := 'mm/s'}`
-/// gives a number its unit.
+/// instances each part is one, by its path: `table[3].x`, `delay.ET`. A kind and each signal of a
+/// block take memory for each field, so of what stands in arrays `most_elements` are
+/// fields, of other parts `most_parts`. REAL and LREAL are real, TIME an integer of unit
+/// ns, all integers and bit strings integers (a ULINT from 2^63 on shows as negative), with the
+/// limits of their type. `{unit := 'mm/s'}` gives a number its unit.
 ///
 /// AXIS_REF in VAR or VAR_OUTPUT, of the kind or of instances in it, is a reference that may be
 /// given, by its path.
@@ -67,8 +68,6 @@ struct FaultPlace {
 /// Recipe.
 class Library {
   public:
-    static constexpr std::size_t most_parts = 4096;
-
     std::span<const BlockType> kinds() const { return kinds_; }
 
     /// Of an instance of a kind of this library, which was scanned.

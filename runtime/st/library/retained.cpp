@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/st/library/fields.hpp"
+#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/types/parameters.hpp"
 
 namespace lineshaft::st {
@@ -80,7 +81,7 @@ class Walk {
 
     /// Of so many numbers that it is kept as one.
     static bool is_long_list(const Type& array) {
-        return array.innermost().is_scalar() && slots_of(array) > Library::most_parts;
+        return array.innermost().is_scalar() && slots_of(array) > most_elements;
     }
 
     void visit_elements(const Type& array, std::size_t slot, const std::string& before,

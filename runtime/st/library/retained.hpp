@@ -11,7 +11,7 @@ namespace lineshaft::st {
 struct RetainedVariable {
     std::string path;            ///< within its block: `table[3].x`, `delay`
     const Type* type = nullptr;  ///< a scalar, a text, a union, an instance of the catalogue, or a
-                                 ///< list of more than Library::most_parts numbers
+                                 ///< list of more than most_elements numbers
     std::size_t offset = 0;      ///< in the memory of the block
     std::size_t size = 0;        ///< of it [bytes]
 };

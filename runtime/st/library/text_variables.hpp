@@ -13,7 +13,7 @@ struct TextVariable {
     std::size_t offset = 0;      ///< in the memory of a block
 };
 
-/// Those of a kind of some library, up to Library::most_parts. Of another kind none.
+/// Those of a kind of some library, as many in arrays as are fields. Of another kind none.
 std::span<const TextVariable> text_variables(const BlockType& kind);
 
 /// Its characters now: UTF-8, but of SCL a byte each.

@@ -8,6 +8,7 @@
 
 #include "blocks/catalog.hpp"
 #include "runtime/st/library/retained.hpp"
+#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "tests/allocations.hpp"
@@ -60,6 +61,33 @@ TEST_CASE("Structured Text: variables are fields of the kind", "[st]") {
     for (const st::RetainedVariable& variable : st::retained(kind))
         retained.push_back(variable.path);
     CHECK(retained == std::vector<std::string>{"table[1]", "table[2]", "delay"});
+}
+
+TEST_CASE("Structured Text: of arrays so many elements are fields, and all variables", "[st]") {
+    const st::Library library = compiled(
+        "FUNCTION_BLOCK Inner VAR a : ARRAY[0..9] OF INT; n : INT; END_VAR n := 1; "
+        "END_FUNCTION_BLOCK\n"
+        "FUNCTION_BLOCK Job\n"
+        "VAR log : ARRAY[0..99, 0..99] OF DINT; texts : ARRAY[0..4999] OF STRING[2]; END_VAR\n"
+        "VAR inner : Inner; many : ARRAY[0..1] OF Inner; t : STRING[2]; END_VAR\n"
+        "VAR_OUTPUT done : BOOL; END_VAR\n"
+        "log[1, 1] := 1; inner(); done := TRUE;\n"
+        "END_FUNCTION_BLOCK\n");
+    const BlockType& kind = *std::ranges::find(library.kinds(), "Job", &BlockType::name);
+    const auto shortened = st::shortened_variables(kind);
+    CHECK(kind.find_readable("done"));
+    CHECK(kind.find_readable("inner.n"));
+    CHECK(kind.find_readable("log[40,95]"));
+    CHECK_FALSE(kind.find_readable("log[40,96]"));
+    CHECK_FALSE(kind.find_readable("many[0].n"));
+    CHECK(st::find_text(kind, "t") == "t");
+    CHECK(st::find_text(kind, "texts[4095]") == "texts[4095]");
+    CHECK(st::find_text(kind, "texts[4096]").empty());
+    CHECK(std::vector(shortened.begin(), shortened.end()) ==
+          std::vector<std::string_view>{"log", "texts", "inner.a", "many"});
+    CHECK(st::find_shortened(kind, "LOG[40,96]") == "log");
+    CHECK(st::find_shortened(kind, "logs").empty());
+    CHECK(st::shortened_variables(library.kinds()[0]).empty());
 }
 
 TEST_CASE("Structured Text: with overflow_faults an integer's overflow is a fault", "[st]") {

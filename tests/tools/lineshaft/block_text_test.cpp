@@ -1,6 +1,7 @@
 #include "tools/lineshaft/block_text.hpp"
 
 #include "tests/runtime/names/small_blocks.hpp"
+#include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;
 
@@ -22,6 +23,23 @@ TEST_CASE("a kind of block is listed with its references and locals") {
                                               {"required", true}});
     CHECK(fields[2].at("direction") == "local");
     CHECK(fields[2].at("type") == "integer");
+}
+
+TEST_CASE("a kind of block is listed with the variables of which not all is known") {
+    Diagnostics out;
+    const Catalog catalog = small_catalog();
+    const auto library = st::compile({st::source("FUNCTION_BLOCK Logger\n"
+                                                 "VAR_OUTPUT log : ARRAY[0..4999] OF INT; END_VAR\n"
+                                                 "log[0] := 1;\n"
+                                                 "END_FUNCTION_BLOCK\n")},
+                                     catalog, out);
+    REQUIRE(library);
+    const BlockType& kind = library->kinds().front();
+    CHECK(
+        block_text(kind).find("\nnot all of log\n  of a block's arrays 4096 elements are known") !=
+        std::string::npos);
+    CHECK(block_json(kind).at("shortened")[0] == "log");
+    CHECK_FALSE(block_json(*catalog.find("gain")).contains("shortened"));
 }
 
 TEST_CASE("a kind of block is listed with units, limits and defaults") {
