@@ -89,6 +89,7 @@ MotionError AxesGroup::administer(const Context& context, GroupJob& job) {
         case GroupCommand::set_override:
             return set_override(context, job);
         case GroupCommand::none:
+        case GroupCommand::ungroup:
         case GroupCommand::reset:
         case GroupCommand::stop:
         case GroupCommand::halt:
