@@ -56,8 +56,9 @@ def check_refusals():
     said = run("new", "mine", code=2)
     assert "'mine.yaml' is there already; name another file" in said, said
     assert (work / "mine.yaml").read_bytes() == before
-    said = run("new", "nowhere/mine", code=2)
-    assert "nowhere/mine.yaml" in said and not (work / "nowhere").exists(), said
+    (work / "file").write_text("")
+    said = run("new", "file/mine", code=3)
+    assert "file/mine.yaml" in said and (work / "file").read_text() == "", said
     said = run("new", "around", "--from", "nothing", code=2)
     assert "nothing" in said and not (work / "around.yaml").exists(), said
 

@@ -174,7 +174,7 @@ std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 /// come.
 enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
-/// Of MC_SetPosition and MC_Home: what becomes of the axis being homed. An MC_Home that leaves it
+/// What MC_SetPosition and MC_Home make of the axis being homed. An MC_Home that leaves it
 /// unchanged searches a signal alone: the position stays, too.
 enum class Referencing : std::int64_t { unchanged, known, unknown };
 

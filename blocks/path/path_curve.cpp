@@ -72,8 +72,8 @@ double angle_of(const PathVector& a, const PathVector& u, const PathVector& w) {
     return angle < 0 ? angle + 2 * std::numbers::pi : angle;
 }
 
-/// Of a corner in the first three axes, x' = u + h (w - u) with h = 3 t^2 - 2 t^3: how fast it is
-/// run along there, and how far it has come, by t from 0 to 1.
+/// How fast a corner is run along in the first three axes, and how far it has come, by t from 0 to
+/// 1: x' = u + h (w - u) with h = 3 t^2 - 2 t^3.
 class CornerWay {
   public:
     explicit CornerWay(const PathCurve& corner)

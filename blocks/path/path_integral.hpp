@@ -4,7 +4,7 @@
 
 namespace lineshaft {
 
-/// Of f over 0..end, by Gauss' rule of five places in each of eight parts.
+/// The integral of f over 0..end, by Gauss' rule of five places in each of eight parts.
 template <class Function>
 double integral_until(double end, const Function& f) {
     constexpr double places[] = {0.0, 0.5384693101056831, 0.9061798459386640};

@@ -197,7 +197,7 @@ SpeedProblem::Progress SpeedProblem::progress() const {
     return out;
 }
 
-/// Of k - 1, k and k + 1; 0 for those that are not there.
+/// The values of k - 1, k and k + 1; 0 for those that are not there.
 SpeedProblem::Triple SpeedProblem::around(const std::array<double, most_speed_intervals>& values,
                                           std::size_t k) const {
     return {k > 0 ? values[k - 1] : 0, values[k], k + 1 < n ? values[k + 1] : 0};

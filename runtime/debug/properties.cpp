@@ -57,8 +57,8 @@ const st::Type* block_in(const st::Variable& part, std::size_t slot, const st::R
     return block_at(*part.type, slot - part.slot, wanted);
 }
 
-/// Of the blocks that begin at a slot of a value the outermost that is the wanted one, or derives
-/// from it; null: none.
+/// The outermost block that begins at a slot of a value and is the wanted one, or derives from it;
+/// null: none.
 const st::Type* block_at(const st::Type& type, std::size_t slot, const st::Routine& wanted) {
     if (type.kind == st::Type::Kind::array) {
         const std::size_t each = st::element_slots(type);

@@ -101,7 +101,7 @@ class Session final : Observer, EventSink {
     /// for one scan of its task. It counts from the next instant on, and what was to come after
     /// that is forgotten. What is wrong goes to `out`. Gives the value as it is shown then.
     std::string change(const std::string& signal, const std::string& value, Diagnostics& out);
-    /// Of what is no signal likewise, but a recording does not have it.
+    /// Likewise what is no signal, but a recording does not have it.
     void change(const std::string& variable, std::function<void()> write);
 
     /// What was changed by hand, for `lineshaft run --recording`; empty: nothing was.

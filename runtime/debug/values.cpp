@@ -208,7 +208,7 @@ Seat given_array(const Seat& reference, const std::vector<std::int64_t>& bounds)
     return array;
 }
 
-/// Of an ARRAY[*] of a routine or block what it has been given.
+/// What an ARRAY[*] of a routine or block has been given.
 Seat as_given(const st::Variable& array, const Seat& reference, std::byte* base) {
     const Frame& frame = *reference.frame;
     std::vector<std::int64_t> bounds;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t most_files = 64;
 
-/// Of TwinCAT itself: a project's files have them where its events are named, too.
+/// TwinCAT's own: a project's files have them where its events are named, too.
 constexpr std::pair<std::string_view, std::string_view> classes_of_system[] = {
     {"TcSystemEventClass", "{BB2A9999-102E-421A-8D3D-B0660E07B1FE}"},
     {"TcRouterEventClass", "{E759605A-2341-48FC-9F3F-C8FA405C4B24}"},

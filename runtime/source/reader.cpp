@@ -119,7 +119,7 @@ std::optional<SignalName> split_signal(std::string_view text) {
     return name;
 }
 
-/// Of `2 mm + 3`, which is no formula, what is wrong with its numbers; of all else nothing.
+/// What is wrong with the numbers of `2 mm + 3`, which is no formula; empty for all else.
 static std::string why_not_computed(std::string_view text) {
     if (!is_digit(text.front()) || text.find_first_of("<>=&|") != text.npos) return {};
     const auto no_names = [](std::string_view) { return std::optional<Amount>(); };

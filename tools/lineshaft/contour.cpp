@@ -137,7 +137,8 @@ class Comparer {
     const Result& result() const { return result_; }
 
   private:
-    /// Of `path`: also of the commands behind the newest, where the actual point is ahead of it.
+    /// Its place in `path`, also among the commands behind the newest, where the actual point is
+    /// ahead of it.
     std::size_t nearest_of_all(const Recording::Sample& sample,
                                const ContourEstimate& estimate) const;
     template <class Measure>

@@ -90,7 +90,7 @@ bool is_not(std::string_view function) {
     return same_name(function, "not");
 }
 
-/// Of truth values, unless something is known to be otherwise.
+/// Its operands are truth values, unless something is known to be otherwise.
 bool is_of_bits(const StandardFunction& f) {
     return f.word == st::Word::and_ || f.word == st::Word::or_ || f.word == st::Word::xor_;
 }

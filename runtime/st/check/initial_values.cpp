@@ -196,8 +196,7 @@ void check_excess(Checking& c, Expression& list, Wide count, Wide room) {
         fmt::format("{} values for {} elements", static_cast<std::int64_t>(count),
                     static_cast<std::int64_t>(room));
     constexpr const char* help = "leave some out, or make the array larger";
-    const Vendor vendor = list.place.dialect().vendor;
-    if (vendor != Vendor::none && vendor != Vendor::automation_studio)
+    if (!list.place.dialect().ignores_excess_values)
         return (void)c.fail(code::value_out_of_range, list.place, told, help);
     c.warn(code::value_out_of_range, list.place, told + ": the last are ignored", help);
     leave_excess_out(list, room);

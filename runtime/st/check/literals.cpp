@@ -110,9 +110,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
 
 /// Up to its first $00, which ends a text in CODESYS and Automation Studio.
 void end_at_zero(std::string& text, const Dialect& dialect) {
-    const bool ends =
-        dialect.vendor == Vendor::codesys || dialect.vendor == Vendor::automation_studio;
-    if (ends) text.resize(std::min(text.find('\0'), text.size()));
+    if (dialect.texts_end_at_zero) text.resize(std::min(text.find('\0'), text.size()));
 }
 
 /// What stands in quotes, in bytes as the dialect has them. What has none is told.

@@ -100,7 +100,7 @@ class FieldWriter {
     }
 
   private:
-    /// Of what is written: a variable of the kind, a part of one, or what stands in an array.
+    /// What is written: a variable of the kind, a part of one, or what stands in an array.
     enum class Place { own, part, element };
 
     /// How many there are in those places.
@@ -184,8 +184,8 @@ class FieldWriter {
         is_own_ = was_own;
     }
 
-    /// Of elements behind `most_elements` only what is given a block of the program is a field, as
-    /// many again.
+    /// Behind `most_elements` only those elements that are given a block of the program are fields,
+    /// as many again.
     bool is_left_out(const Type& type) const {
         const Count& count = type.kind == Kind::text ? texts_ : fields_;
         if (place_ == Place::own) return false;

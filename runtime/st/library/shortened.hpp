@@ -8,7 +8,7 @@
 
 namespace lineshaft::st {
 
-/// Of a kind of some library so much is fields: of what stands in arrays, and of other parts of
+/// So many fields a kind of some library has: of what stands in arrays, and of other parts of
 /// variables. A kind takes memory for each field, and so does each block of it for its signal.
 inline constexpr std::size_t most_elements = 4096, most_parts = 65536;
 

@@ -17,7 +17,8 @@ const Dialect iec = {.sign_precedes_power = true,
                      .selects_by_texts = true,
                      .loops_begin_narrowed = true,
                      .references_take_addresses = true,
-                     .ampersands_may_be_two = true};
+                     .ampersands_may_be_two = true,
+                     .ignores_excess_values = true};
 
 const Dialect simatic_ax = [] {
     Dialect made = iec;
@@ -36,7 +37,7 @@ const Dialect automation_studio = [] {
     made.text_length = 80;
     made.vendor = Vendor::automation_studio;
     made.ampersands_may_be_two = false;
-    made.open_texts_end_with_lines = true;
+    made.open_texts_end_with_lines = made.texts_end_at_zero = true;
     return made;
 }();
 
@@ -59,6 +60,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .goto_is_a_name = true,
                          .points_may_end_reals = true,
                          .has_sections_of_exports = true,
+                         .texts_end_at_zero = true,
                          .texts_have_any_length = true,
                          .addresses_count = AddressCount::sizes,
                          .text_of_real = TextOfReal::of_codesys,
@@ -104,6 +106,7 @@ const Dialect matiec = [] {
     made.extremes_keep_second = made.reckons_in_registers = made.goto_is_a_name = false;
     made.points_may_end_reals = made.has_sections_of_exports = false;
     made.durations_may_stand_apart = true;
+    made.texts_end_at_zero = false;
     made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.most_aligned = iec.most_aligned;
     made.text_length = 126;

@@ -72,6 +72,8 @@ struct Dialect {
     bool ampersands_may_be_two = false;      ///< `a && b`
     bool peripheries_are_image = false;      ///< `%IW4:P` is `%IW4`, `"tag":P` is `"tag"`
     bool dint_is_time = false;               ///< a DINT is a TIME in ms, and the other way
+    bool texts_end_at_zero = false;          ///< a literal's `$00` ends it
+    bool ignores_excess_values = false;      ///< of an array that has fewer elements
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
     AddressCount addresses_count = AddressCount::bytes;
     bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC

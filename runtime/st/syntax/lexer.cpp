@@ -127,7 +127,7 @@ void pass_text(TextCursor& in) {
     if (in.at != end_of_line && !is_whole) in.at = end_of_line;
 }
 
-/// Of a text without its quote, so that there is no other mistake.
+/// Tells that a text lacks its quote, so that there is no other mistake.
 void refuse_open_text(TextCursor& in) {
     const bool escapes = in.text.substr(in.start, in.at - in.start).find("$'") != in.text.npos;
     in.out.add(

@@ -52,7 +52,7 @@ struct LeftOut {
     bool ends_choice = false;  ///< all of it; else what follows holds
 };
 
-/// Of the part of an `{IF}` behind `at`; `may_choose`: none of the parts before it held.
+/// Where the part of an `{IF}` behind `at` ends; `may_choose`: none of the parts before it held.
 LeftOut left_out(std::string_view text, std::size_t at, bool may_choose,
                  const Definitions& defined);
 

@@ -328,8 +328,10 @@ TEST_CASE("group: a corner is passed with the limits of the move that its mode o
         double before = 0, within = 0, behind = 0;
         while (!bench.is("second.Done")) {
             bench.step();
-            const double way = bench.number("group.distance"), v = bench.number("group.velocity");
-            double& most = way <= 30 ? before : way < 50 ? within : behind;
+            const double x = bench.number("x.position"), v = bench.number("group.velocity");
+            double& most = x <= 30                                ? before
+                           : x < 40 + 10 * 40 / std::hypot(40, 5) ? within
+                                                                  : behind;
             most = std::max(most, v);
             REQUIRE(bench.now() < 20'000);
         }

@@ -18,7 +18,7 @@ struct RandomPath {
 /// Lines, arcs and splines, some lines cut in two, so that there are smooth joints.
 RandomPath random_path(Random& random, std::size_t most);
 
-/// Of length 1, in a plane or in space.
+/// It has the length 1, in a plane or in space.
 PathVector random_direction(Random& random, std::size_t axes);
 
 }  // namespace lineshaft::test

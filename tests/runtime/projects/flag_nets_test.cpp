@@ -40,7 +40,7 @@ struct Net {
     void wire(const std::string& from, const std::string& to) {
         wires += "<Wire>" + from + to + "</Wire>";
     }
-    /// Of a label, which the network has.
+    /// A connection to a label, which the network has.
     std::string label(const std::string& name) {
         const std::string id = std::to_string(++count), word = "<Label Name=\"" + name + "\"/>";
         parts += "<Access Scope=\"Label\" UId=\"" + id + "\">" + word + "</Access>";

@@ -291,7 +291,7 @@ void add_units(std::string_view unit, Offer& to) {
             to.add(name, Offered::unit, "", "");
 }
 
-/// Of one that is an enumeration, where it is declared, or set: `inputs.mode: fast`.
+/// The values of one that is an enumeration, where it is declared, or set: `inputs.mode: fast`.
 void add_values_of_input(const CheckedProgram& program, const std::vector<std::string>& keys,
                          Offer& to) {
     const bool is_declared = keys.size() == 2 && keys[0] == "inputs";
