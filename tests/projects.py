@@ -1164,6 +1164,8 @@ def check_typst():
     write("Thesis/plc/Types.typ", "TYPE\n\tKind : (STOP, GO);\nEND_TYPE\n")
     write("Thesis/plc/Main.st", "PROGRAM Main\nVAR kind : Kind; END_VAR\nkind := GO;\nEND_PROGRAM\n")
     run("check", "Thesis", "--source-dialect", "automation_studio")
+    write("Cut/Types.typ", "TYPE\n\tKind : (STOP, GO);\n")
+    assert "END_TYPE" in run("check", "Cut", code=2)
 
 
 def check_later_constants():

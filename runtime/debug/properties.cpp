@@ -83,7 +83,8 @@ const st::Type* block_at(const st::Type& type, std::size_t slot, const st::Routi
 const st::CodeRoutine* code_of(const st::Library::Made& made, const st::Routine& routine) {
     const auto& order = made.checked.order;
     const auto it = std::ranges::find(order, &routine);
-    return it == order.end() ? nullptr : &made.generated.code.routines[it - order.begin()];
+    const auto number = static_cast<std::size_t>(it - order.begin());
+    return it == order.end() ? nullptr : &made.generated.code.routines[number];
 }
 
 std::string why_not(const st::Code& code, const std::byte* root, st::Fault fault) {

@@ -151,7 +151,7 @@ bool is_of_typst(const std::string& file) {
         if (fs::exists(folder / list, unknown)) return false;
     Diagnostics unread;
     const auto source = read_source(file, unread);
-    return source && !begins_with_unit(source->text);
+    return source && first_word_of(source->text) != "type";
 }
 
 /// A table of exports, which linkers name as CoDeSys does its files.

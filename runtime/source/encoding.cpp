@@ -80,20 +80,21 @@ bool is_text_with_unit(const std::filesystem::path& file) {
 
 }  // namespace
 
+std::string first_word_of(std::string_view text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    text = without_comments(text);
+    return lower(std::string(text.substr(0, text.find_first_of(" \t\r\n\"(*"))));
+}
+
 bool begins_with_unit(std::string_view written) {
     constexpr std::string_view words[] = {
         "program",      "function_block", "function",  "type",       "var",
         "class",        "interface",      "namespace", "data_block", "organization_block",
         "configuration"};
-    const std::string text = lower(std::string(written));
-    std::string_view rest = text;
-    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-    rest = without_comments(rest);
-    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r\n\"(*"));
-    const std::string_view unit = word.starts_with("var_") ? "var" : word;
+    const std::string text = lower(std::string(written)), word = first_word_of(written);
+    const std::string unit = word.starts_with("var_") ? "var" : word;
     return std::ranges::find(words, unit) != std::end(words) &&
-           text.find("end_" + std::string(unit)) != text.npos &&
-           text.find("\nnetwork") == text.npos;
+           text.find("end_" + unit) != text.npos && text.find("\nnetwork") == text.npos;
 }
 
 char32_t of_windows_1252(unsigned char byte) {

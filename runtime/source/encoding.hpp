@@ -14,6 +14,9 @@ bool is_structured_text(const std::filesystem::path& file);
 /// instructions (AWL): other texts begin with `Type` or `Program`, too.
 bool begins_with_unit(std::string_view text);
 
+/// Behind blanks, comments and pragmas, in small letters; empty: there is none.
+std::string first_word_of(std::string_view text);
+
 /// The file's name does not say what is in it: `.txt`, `.il`, `.plc`.
 bool has_name_of_any_text(const std::filesystem::path& file);
 
