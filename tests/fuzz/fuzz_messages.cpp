@@ -19,6 +19,14 @@ using namespace lineshaft::test;
 
 namespace {
 
+/// How many were sent in all, which LINESHAFT_FIGURES=1 tells at the end.
+struct Sent {
+    long messages = 0;
+    ~Sent() {
+        if (std::getenv("LINESHAFT_FIGURES")) std::fprintf(stderr, "%ld messages\n", messages);
+    }
+} sent_in_all;
+
 void hold(bool holds, const std::string& what) {
     if (holds) return;
     std::fprintf(stderr, "%s\n", what.c_str());
@@ -142,6 +150,7 @@ std::string debugger_messages(Choices choices, std::size_t size) {
     std::string all;
     int seq = 0;
     const auto add = [&](std::string_view command, Json arguments) {
+        ++sent_in_all.messages;
         all += framed({{"seq", ++seq},
                        {"type", "request"},
                        {"command", command},
@@ -162,6 +171,7 @@ std::string debugger_messages(Choices choices, std::size_t size) {
 std::string server_messages(Choices choices, std::size_t size) {
     std::string all = framed({{"id", 0}, {"method", "initialize"}, {"params", Json::object()}});
     for (std::size_t i = 1; i <= std::min<std::size_t>(size / 4, 40); ++i) {
+        ++sent_in_all.messages;
         const std::string_view method = choices.one_of(methods);
         Json message{{"jsonrpc", "2.0"}, {"method", method}};
         if (method.find("/did") == method.npos) message["id"] = i;
