@@ -8,7 +8,6 @@
 #include "runtime/names/left_out.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/library/library.hpp"
-#include "runtime/st/library/shortened.hpp"
 #include "runtime/st/types/types.hpp"
 
 namespace lineshaft {
@@ -107,18 +106,6 @@ void Net::unknown_port(const Reader& read, const Node& node, const Instance& blo
     if (refuse_left_out(read, node, block, port)) return;
     read.fail(code::unknown_port, node, fmt::format("{} has no port '{}'", block.described(), port),
               suggest(misspelt(port), names, block.name + "."));
-}
-
-bool refuse_left_out(const Reader& read, const Node& node, const Instance& block,
-                     std::string_view port) {
-    if (st::find_shortened(*block.type, port).empty()) return false;
-    read.fail(code::unknown_port, node,
-              fmt::format("'{}.{}' is not known here: of a block's arrays {} elements are, of its "
-                          "instances and structures {} parts",
-                          block.name, port, st::most_elements, st::most_parts),
-              fmt::format("give {} a variable of its own with that value, and name it",
-                          block.type->name));
-    return true;
 }
 
 std::string_view Net::misspelt(std::string_view port) const {

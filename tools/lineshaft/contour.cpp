@@ -26,12 +26,11 @@ constexpr const char* contour_help =
     "  real-time  nearest command point so far, tangent from its neighbours (block contour_error)\n"
     "  linear     distance to the polyline of all command points, beside the nearest\n"
     "  spline     distance to the natural cubic spline through all, beside the nearest\n"
-    "The nearest is that of the real-time search; where it is the newest it is looked for on the\n"
-    "commands that came later, as the actual point may be ahead of the command.\n"
-    "Their differences are told, too. Units come from the trace's sidecar or from titles such as "
-    "'x [um]';\n"
-    "without a unit a column is in mm. Left out and counted: rows that lack a value or are beyond\n"
-    "1000 km, and rows whose nearest point has left the 512 points of the real-time memory.\n"
+    "and their differences. The nearest is that of the real-time search; where it is the newest\n"
+    "it is looked for on the commands that came later, as the actual point may be ahead of the\n"
+    "command. Units come from the trace's sidecar or from titles such as 'x [um]'; without a unit\n"
+    "a column is in mm. Left out and counted: rows that lack a value or are beyond 1000 km, and\n"
+    "rows whose nearest point has left the 512 points of the real-time memory.\n"
     "Time per point is that of this computer: the real-time one includes the search for the\n"
     "nearest point, the others are told it, and the making of the spline is not counted.";
 
