@@ -184,32 +184,34 @@ Fault run_whole(Frames& frames) {
     return fault == Fault::none ? fault : run_caught<counts, steps>(frames, fault);
 }
 
-[[gnu::always_inline]] inline Fault run_native(Frames& frames, std::byte* base) {
-    const Code& code = frames.code;
-    const Fault fault = code.native->scan_of(code, frames.scanned)(base, frames, frames.fuel);
-    return fault == Fault::none ? fault : run_caught<false, false>(frames, fault);
+[[gnu::always_inline]] inline Fault run_native(const ScanStart& start, Frames& frames,
+                                               std::byte* base) {
+    const NativeEntry entry = start.code->native->scan_of(start.number, *start.routine);
+    const Fault fault = entry(base, frames, start.fuel);
+    if (fault == Fault::none) [[likely]]
+        return fault;
+    return run_caught<false, false>(frames, fault);
 }
 
-[[gnu::always_inline]] inline Frames frames_at(const Code& code, const CodeRoutine& routine,
-                                               std::byte* instance, const Scan& now,
-                                               const Context& context, std::int64_t fuel) {
-    return {code,
-            routine,
+[[gnu::always_inline]] inline Frames frames_at(const ScanStart& start, std::byte* instance,
+                                               const Scan& now, const Context& context) {
+    return {*start.code,
+            *start.routine,
             now,
             context,
-            fuel,
+            start.fuel,
             instance,
-            instance + 8 * std::size_t{code.calls_slot()},
-            instance + 8 * std::size_t{routine.pile.first}};
+            instance + start.calls,
+            instance + start.pile};
 }
 
 /// With a probe, or counted, or without native code. Apart, as the way to that is short.
-[[gnu::noinline]] Fault run_otherwise(Frames& frames) {
+[[gnu::noinline]] Fault run_otherwise(const ScanStart& start, Frames& frames) {
     const auto& times = frames.code.times;
     Probe* const probe = frames.code.probe;
     std::byte* const instance = frames.root;
     const bool steps = probe && probe->steps(frames.scanned, frames.now);
-    if (frames.code.native && !steps) return run_native(frames, frames.place(frames.base));
+    if (frames.code.native && !steps) return run_native(start, frames, frames.place(frames.base));
     if (!times && !steps) return run_whole<false, false>(frames);
     std::uint64_t counted[op_classes + 1] = {};
     frames.counted = counted;
@@ -228,19 +230,29 @@ Probe::Probe(const Code& code) : marks_(code.instructions.size()) {
         marks_[code.statements[i - 1].instruction] = static_cast<std::uint32_t>(i);
 }
 
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
-              const Context& context, std::int64_t fuel) {
-    Frames frames = frames_at(code, routine, instance, now, context, fuel);
-    if (code.native && !code.probe) return run_native(frames, instance);
-    return run_otherwise(frames);
+ScanStart::ScanStart(const Code& of, const CodeRoutine& runs, std::int64_t passes)
+    : code(&of),
+      routine(&runs),
+      fuel(passes),
+      number(static_cast<std::uint32_t>(&runs - of.routines.data())),
+      calls(8 * of.calls_slot()),
+      pile(8 * runs.pile.first) {}
+
+bool execute(const ScanStart& start, std::byte* instance, const Scan& now, const Context& context) {
+    Frames frames = frames_at(start, instance, now, context);
+    const Code& code = *start.code;
+    const Fault fault = code.native && !code.probe ? run_native(start, frames, instance)
+                                                   : run_otherwise(start, frames);
+    return fault != Fault::none;
 }
 
 Fault execute_part(const Code& code, const CodeRoutine& routine, std::byte* copy,
                    std::uint64_t frame, const Scan& now, const Context& context,
                    std::int64_t fuel) {
-    Frames frames = frames_at(code, routine, copy, now, context, fuel);
+    const ScanStart start(code, routine, fuel);
+    Frames frames = frames_at(start, copy, now, context);
     frames.base = frame;
-    return run_otherwise(frames);
+    return run_otherwise(start, frames);
 }
 
 std::size_t bytes_beside(const CodeRoutine& routine) {

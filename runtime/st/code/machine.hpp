@@ -47,13 +47,24 @@ Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
     return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
 }
 
+/// What all scans of the instances of a kind begin with.
+struct ScanStart {
+    const Code* code = nullptr;
+    const CodeRoutine* routine = nullptr;
+    std::int64_t fuel = 0;              ///< greatest number of passes of loops and calls
+    std::uint32_t number = 0;           ///< of the routine
+    std::uint32_t calls = 0, pile = 0;  ///< where they begin in an instance [bytes]
+
+    ScanStart() = default;
+    ScanStart(const Code& of, const CodeRoutine& runs, std::int64_t passes);
+};
+
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
-/// instruction; the return addresses of the calls that ran are left for messages. Allocates
-/// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With
-/// Code::times the header has how many of each class were executed and what they took.
+/// instruction; the return addresses of the calls that ran are left for messages. True: there was
+/// a fault. Allocates nothing, throws nothing, and ends after at most `fuel` passes of loops and
+/// calls. With Code::times the header has how many of each class were executed and what they took.
 /// Where Code::probe wants to step the scan, it is interpreted.
-Fault execute(const Code& code, const CodeRoutine& routine, std::byte* instance, const Scan& now,
-              const Context& context, std::int64_t fuel);
+bool execute(const ScanStart& start, std::byte* instance, const Scan& now, const Context& context);
 
 /// The same on the frame at an address: 0, or that of an instance that is a part of another one,
 /// whose copy has room for the calls, and gets the header.

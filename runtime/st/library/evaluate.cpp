@@ -40,10 +40,10 @@ Evaluated evaluate(Expression& expression) {
     Generated made = generate(alone, wrong, {});
     std::vector<std::uint64_t>& image = made.images.at(&block);
     Scan scan;
-    const Fault fault = execute(made.code, made.code.routines.front(),
-                                reinterpret_cast<std::byte*>(image.data()), scan, {}, 1);
-    if (fault != Fault::none) return {fault};
-    return {fault, constant_of(*expression.type, &image[result.slot])};
+    auto* const instance = reinterpret_cast<std::byte*>(image.data());
+    if (execute({made.code, made.code.routines.front(), 1}, instance, scan, {}))
+        return {fault_of(made.code, instance).fault};
+    return {Fault::none, constant_of(*expression.type, &image[result.slot])};
 }
 
 }  // namespace lineshaft::st

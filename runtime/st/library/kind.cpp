@@ -59,16 +59,16 @@ bool refuse(const KindContext& kind, std::byte* instance, Fault fault) {
 
 bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
               const Context& context) {
-    if (kind.is_looked_at) {
+    if (!kind.is_plain) {
         if (kind.run_test) return run_test(kind, instance, context);
         if (is_refused(kind, instance)) return true;
     }
-    return execute(*kind.code, *kind.routine, instance, now, context, kind.options.fuel) !=
-           Fault::none;
+    return execute(kind.start, instance, now, context);
 }
 
 [[gnu::noinline]] bool scan_all(const KindContext& kind, std::byte* first, std::size_t count,
                                 const Scan& now, const Context& context) {
+    if (!kind.routine) return false;
     bool error = false;
     for (; count > 0; --count, first += kind.size) error |= scan_one(kind, first, now, context);
     return error;
@@ -76,8 +76,8 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
 
 bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
     const auto& kind = *static_cast<const KindContext*>(context.kind);
-    if (!kind.routine) return false;
-    if (count == 1) return scan_one(kind, first, now, context);
+    if (count == 1 && kind.is_plain) [[likely]]
+        return execute(kind.start, first, now, context);
     return scan_all(kind, first, count, now, context);
 }
 
@@ -324,7 +324,9 @@ KindContext& add_kind(Library::Made& made, std::string name, const Type& type,
 }
 
 BlockType block_type(KindContext& kind, const std::shared_ptr<const Library::Made>& made) {
-    kind.is_looked_at = kind.run_test || !kind.references.empty() || !kind.checks.empty();
+    kind.is_plain =
+        kind.routine && !kind.run_test && kind.references.empty() && kind.checks.empty();
+    if (kind.routine) kind.start = {*kind.code, *kind.routine, kind.options.fuel};
     BlockType type;
     type.name = kind.name;
     type.doc = kind.doc;

@@ -14,7 +14,8 @@ struct KindContext {
     const Compiled* made = nullptr;
     const Code* code = nullptr;            ///< of it
     const CodeRoutine* routine = nullptr;  ///< null: a data block
-    bool is_looked_at = false;             ///< before a scan
+    bool is_plain = false;                 ///< has one, and nothing is looked at before a scan
+    ScanStart start = {};
     const std::uint64_t* image = nullptr;
     std::size_t size = 0;
     Options options;

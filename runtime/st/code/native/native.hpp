@@ -36,9 +36,9 @@ struct Native {
         return reinterpret_cast<NativeEntry>(const_cast<std::byte*>(first) +
                                              places.data()[instruction]);
     }
-    NativeEntry scan_of(const Code& code, const CodeRoutine& routine) const {
+    NativeEntry scan_of(std::uint32_t number, const CodeRoutine& routine) const {
         const NativeEntry* const made = compiled.load(std::memory_order_acquire);
-        return made ? made[&routine - code.routines.data()] : entry(routine.entry);
+        return made ? made[number] : entry(routine.entry);
     }
 };
 
