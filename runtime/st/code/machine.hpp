@@ -43,8 +43,8 @@ class Probe {
 /// Where an address leads, in a scan of the instance at `root`.
 template <class Byte>
 Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
-    const std::uint64_t space = address >> 32;
-    return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
+    const Address at = Address::of(address);
+    return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
 }
 
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the

@@ -343,12 +343,9 @@ struct Frames {
           top(calls),
           pile(recurring) {}
 
-    /// Where an address leads: it is the number of an instance of the program plus 1, or 0 for the
-    /// block itself, times 2^32, plus a slot.
     std::byte* place(std::uint64_t address) const {
-        const std::uint64_t space = address >> 32;
-        std::byte* first = space == 0 ? root : context.instances[space - 1];
-        return first + 8 * (address & 0xFFFF'FFFF);
+        const Address at = Address::of(address);
+        return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
     }
 
     std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
@@ -356,17 +353,20 @@ struct Frames {
     /// The address of something, as it means the same to any block that uses it in any scan: with
     /// the number of the instance, where that is one of the program's.
     std::uint64_t lasting(std::uint64_t address) const {
-        if (address >> 32 != 0) return address;
+        const Address at = Address::of(address);
+        if (at.is_of_program()) return address;
         for (int i = 0; i < context.blocks; ++i)
             if (context.instances[i] == root)
-                return (static_cast<std::uint64_t>(i) + 1) << 32 | address;
+                return Address::in(static_cast<std::uint64_t>(i), at.slot).word();
         return address;
     }
 
     std::uint64_t global_number(std::uint32_t number) const {
         return word(root, globals_slot + number);
     }
-    std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
+    std::uint64_t global(std::uint32_t number) const {
+        return Address::in(global_number(number)).word();
+    }
 
     /// What that method is of the instance at the address, which is one, to slot 0, and the
     /// address of what is given to it, to the next one. False: there is no room to call it.

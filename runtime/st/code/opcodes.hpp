@@ -40,7 +40,7 @@
     OP(set_address, move, "ws--", put(a, frames.address_of(b)))                                      \
     OP(set_global, move, "wn--", put(a, frames.global(b)))                                           \
     OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
-    OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
+    OP(address_of_number, move, "wr--", put(a, Address::in(U(b)).word()))                                     \
     OP(lasting, move, "wr--", put(a, frames.lasting(U(b))))                                          \
     OP(number_call, move, "w---", put(a, frames.number_of_call(fuel)))                                \
     OP(bytes_of_slots, integer, "wrn-", put(a, byte_of(code, c, U(b))))                              \
