@@ -333,14 +333,12 @@ class Reckoning {
         const st::Type& type = *text.seat.type;
         const st::Dialect& dialect = e.place.dialect();
         const auto place = static_cast<std::int64_t>(index);
-        const std::uint32_t room =
-            type.is_open ? static_cast<std::uint32_t>(text.value.text.size()) : type.room();
-        const auto found =
-            dialect.texts_are_bytes
-                ? st::meaning::byte_of_text(text.seat.at, place, room)
-                : st::meaning::character_of(
-                      text.seat.at, place,
-                      room | (dialect.characters_may_be_missing ? st::meaning::of_s7 : 0));
+        st::TextRoom room = type.room();
+        if (type.is_open) room = {static_cast<std::uint32_t>(text.value.text.size()), false};
+        if (dialect.characters_may_be_missing) room = room.that_may_miss();
+        const auto found = dialect.texts_are_bytes
+                               ? st::meaning::byte_of_text(text.seat.at, place, room)
+                               : st::meaning::character_of(text.seat.at, place, room);
         if (!found) throw Failed(fmt::format("'{}' has no such character", e.place.text()));
         const st::Type& of = dialect.texts_are_bytes ? st::bits_type(type.is_wide ? 16 : 8)
                              : type.is_wide          ? st::wide_char_type

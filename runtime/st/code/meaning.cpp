@@ -65,12 +65,11 @@ void write_truth(std::byte* to, bool value) {
     write_text(to, value ? "TRUE" : "FALSE");
 }
 
-void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
-    fmt::memory_buffer text;
-    const Wide time = (kind & of_unsigned) != 0 ? Wide{static_cast<std::uint64_t>(value)} : value;
-    add_time(text, static_cast<Type::Kind>(kind & 0xFF), time,
-             static_cast<TimeForm>(kind / time_forms & 0xF));
-    write_text(to, {text.data(), text.size()});
+void write_time(std::byte* to, std::uint32_t text, std::int64_t value) {
+    const auto [kind, form, is_unsigned] = TimeText::of_number(text);
+    fmt::memory_buffer made;
+    add_time(made, kind, is_unsigned ? Wide{static_cast<std::uint64_t>(value)} : value, form);
+    write_text(to, {made.data(), made.size()});
 }
 
 void write_bits(std::byte* to, std::uint64_t value) {

@@ -289,7 +289,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         if (e.type->is_character) {
             const Slot to = w.result(wanted);
             w.put(Op::text_character, to, text, w.constant_slot(1),
-                  e.type->bits == 16 ? of_units | 1 : 1);
+                  TextRoom(1, e.type->bits == 16).number());
             return to;
         }
         return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,

@@ -164,7 +164,7 @@ Slot address_of(Writing& w, Location location) {
 }
 
 Slot capacity_of(Writing& w, const Location& text, const Type& type) {
-    return type.is_open ? text.capacity : w.constant_slot(type.room());
+    return type.is_open ? text.capacity : w.constant_slot(type.room().number());
 }
 
 Slot load(Writing& w, const Location& from, Slot wanted) {

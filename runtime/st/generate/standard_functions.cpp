@@ -67,7 +67,8 @@ struct Call : Emission {
     Slot several(std::size_t first) override { return st::several(w, call, first); }
     Slot capacity(std::size_t i) override {
         const Slot room = capacity_of(w, locate(w, given(i)), *given(i).type);
-        return w.emit(Op::and_bits, wanted, room, w.constant_slot(of_units - 1));
+        const std::uint32_t most = ~TextRoom(0, true).number();
+        return w.emit(Op::and_bits, wanted, room, w.constant_slot(most));
     }
     Slot reference(std::size_t i) override { return st::reference(w, given(i)); }
     Slot moved(Slot reference, Slot bytes) override {
@@ -94,7 +95,7 @@ struct Call : Emission {
         const bool is_codesys = call.place.dialect().vendor == Vendor::codesys;
         const auto most =
             static_cast<std::uint32_t>(is_codesys ? longest_result_of_codesys : longest_result);
-        w.put(Op::text_append, to, from, range, is_wide() ? most | of_units : most);
+        w.put(Op::text_append, to, from, range, TextRoom(most, is_wide()).number());
     }
     void reset_timer(std::size_t i) override { st::reset_timer(w, given(i)); }
 
