@@ -250,7 +250,7 @@ class Reckoning {
     Operand operand(const Value& value, const Named& named, bool is_narrow) const {
         using Is = lineshaft::Type;
         Operand found{.unit = std::string(named.unit)};
-        const st::Type* type = named.unit == "ns" ? &st::time_type : &st::lint_type;
+        const st::Type* type = named.is_time() ? &st::time_type : &st::lint_type;
         if (named.type == Is::real) {
             type = is_narrow ? &st::real_type : &st::lreal_type;
             found.value.real = std::get<double>(value);

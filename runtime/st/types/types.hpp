@@ -320,6 +320,7 @@ struct Global {
     const Type* type = nullptr;  ///< structure, or block
     const Pou* pou = nullptr;
     const Variable* object = nullptr;  ///< a block of the program, which sources name only
+    bool is_statics = false;           ///< it has what VAR_STAT declares in functions
 };
 
 /// The instance that has a program's process image. No name of a source is like it.
