@@ -279,16 +279,18 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
 }
 
 /// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.
-void choose_of_others(Checking& c, Expression& call, const Type* type) {
-    const OtherChoice other = call.place.dialect().other_choice;
-    const bool has_else = same_name(call.arguments.back().name.text, "inelse");
-    if (!type || has_else || other == OtherChoice::fault) return;
+void choose_of_others(Checking& c, Expression*& e, const Type* type) {
+    const OtherChoice other = e->place.dialect().other_choice;
+    if (!type || e->has_else || other == OtherChoice::fault) return;
+    std::vector<Argument> inputs = e->arguments;
     if (other == OtherChoice::initial && (type->is_scalar() || type->kind == Kind::text))
-        call.arguments.push_back({{}, false, make_constant(c, call, *type, {}), nullptr});
-    call.arguments.back().name.text = "inelse";
+        inputs.push_back({.value = make_constant(c, *e, *type, {})});
+    e = make_with(c, *e, std::move(inputs));
+    e->has_else = true;
 }
 
-const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
+const Type* check_chosen(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     Expression*& choice = call.arguments[0].value;
     if (call.standard->parameters[0].type == Generic::boolean)
         return coerce(c, choice, bool_type) ? unite_from(c, call, 1, expected) : nullptr;
@@ -297,7 +299,7 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
     if (choice->type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
     const Type* type = unite_from(c, call, 1, expected);
-    choose_of_others(c, call, type);
+    choose_of_others(c, e, type);
     return type;
 }
 
@@ -459,7 +461,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::scaled: return check_scale(c, e, expected);
         case Typing::own:
         case Typing::common: return check_common(c, e, expected);
-        case Typing::chosen: return check_chosen(c, call, expected);
+        case Typing::chosen: return check_chosen(c, e, expected);
         case Typing::places: return fold_shift(c, e) ? e->type : check_places(c, e, expected);
         case Typing::bits: return check_bits(c, call, expected);
         case Typing::bit_number: return check_bit_number(c, call, expected);

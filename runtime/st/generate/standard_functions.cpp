@@ -120,9 +120,8 @@ bool chooses(const Expression& e) {
 Slot choose(Writing& w, Call& call) {
     const std::size_t count = call.count() - 1;
     const bool by_truth = call.given(0).type->kind == Kind::boolean;
-    const bool has_else = same_name(call.call.arguments.back().name.text, "inelse");
     const Slot to = w.new_temporary(), given = value_before(w, call.given(0), call.call);
-    const Slot number = by_truth || has_else ? given : call.index(given, count);
+    const Slot number = by_truth || call.call.has_else ? given : call.index(given, count);
     Jumps ends;
     for (std::size_t i = 1; i <= count; ++i) {
         Jumps next;
