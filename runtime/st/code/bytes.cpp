@@ -313,7 +313,8 @@ Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::
                       });
 }
 
-Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count, const std::byte* from) {
+static Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count,
+                         const std::byte* from) {
     const auto first = static_cast<std::uint64_t>(to.first);
     return visit_runs(code, to, count, false, is_nothing,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {

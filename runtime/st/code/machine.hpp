@@ -40,13 +40,6 @@ class Probe {
     std::vector<std::uint32_t> marks_;
 };
 
-/// Where an address leads, in a scan of the instance at `root`.
-template <class Byte>
-Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
-    const Address at = Address::of(address);
-    return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
-}
-
 /// Executes the routine on an instance. Its header then says how that ended: the fault, and the
 /// instruction; the return addresses of the calls that ran are left for messages. Allocates
 /// nothing, throws nothing, and ends after at most `fuel` passes of loops and calls. With

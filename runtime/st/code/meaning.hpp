@@ -332,10 +332,7 @@ struct Frames {
           top(calls),
           pile(recurring) {}
 
-    std::byte* place(std::uint64_t address) const {
-        const Address at = Address::of(address);
-        return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
-    }
+    std::byte* place(std::uint64_t address) const { return place_of(address, root, context); }
 
     std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
 

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "runtime/model/scan.hpp"
 #include "runtime/st/code/op_class.hpp"
 
 namespace lineshaft::st {
@@ -52,6 +53,13 @@ struct Address {
         return {instance + 1, slot};
     }
 };
+
+/// Where an address leads, in a scan of the instance at `root`.
+template <class Byte>
+Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
+    const Address at = Address::of(address);
+    return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
+}
 
 /// Where a scan ended with a fault.
 struct EndOfScan {
