@@ -170,8 +170,8 @@ std::string text_of(MotionError error, const Shortage& shortage, std::string_vie
 /// it has there.
 std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 
-/// Of MC_Home. `other`: there is no such mode. `signalled`: it was `on_signal`, and the signal has
-/// come.
+/// How MC_Home homes. `other`: there is no such mode. `signalled`: it was `on_signal`, and the
+/// signal has come.
 enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
 /// What MC_SetPosition and MC_Home make of the axis being homed. An MC_Home that leaves it

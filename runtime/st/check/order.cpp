@@ -316,7 +316,7 @@ void order_routines(Checking& c) {
     tell_of_rounds(c, o.rounds);
 }
 
-/// Of a library of Automation Studio, whose bodies are compiled: a `.fun` alone declares it.
+/// It is of a library of Automation Studio, whose bodies are compiled: a `.fun` alone declares it.
 static bool is_declared_alone(const Pou& unit) {
     return unit.body.empty() && unit.methods.empty() && unit.place.source &&
            unit.place.source->has_no_bodies();

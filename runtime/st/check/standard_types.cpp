@@ -11,15 +11,15 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of a number without type and one with; one of them is real. `real` is what the first is beside
-/// an integer.
+/// One number is without type, the other with; one of them is real. `real` is what the first is
+/// beside an integer.
 const Type* mixed(const Type& a, const Type& b, const Type& real) {
     if (a.is_any() && b.is_any()) return a.is_real() ? &a : &b;
     const Type &any = a.is_any() ? a : b, &typed = a.is_any() ? b : a;
     return any.is_real() ? common_type(typed, real) : &typed;
 }
 
-/// Of a bit string and an integer: that of the numbers.
+/// A bit string beside an integer is taken for the number.
 const Type* common_number(const Type& a, const Type& b, const Place& place) {
     const auto number = [](const Type& type) -> const Type& {
         return type.kind == Kind::bits ? integer_type(type.bits, false) : type;
@@ -57,7 +57,7 @@ const Type& type_of_bound(const Expression& call, const Type* expected) {
     return is_due ? expected->plain() : dint_type;
 }
 
-/// Of the dimension that a variable says: MUX over those of all, whose fault a dimension that there
+/// A variable says the dimension: MUX over those of all, whose fault a dimension that there
 /// is not stays in every dialect.
 const Type* check_chosen_bound(Checking& c, Expression*& e, const Type& result) {
     const bool is_lower = e->standard->typing == Typing::lower_bound;
@@ -169,7 +169,7 @@ bool coerce_from(Checking& c, Expression& call, std::size_t first, const Type& t
     return good;
 }
 
-/// Of an enumeration with numbers what these are, where that is not all there is.
+/// An enumeration with numbers is what these are, where that is not all there is.
 const Type& number_type(const Type& type, const Type& other) {
     return type.has_numbers && !same_type(type, other) ? *type.base : type;
 }
@@ -328,7 +328,7 @@ bool fold_shift(Checking& c, Expression*& e) {
     return become(c, e, any_integer_type, {.integer = shifted});
 }
 
-/// Of one bit a shift by any place but 0 is FALSE, and a rotation nothing.
+/// A shift of one bit by any place but 0 is FALSE, and its rotation does nothing.
 const Type* check_shift_of_truth(Checking& c, Expression*& e) {
     Expression *given = e->arguments[0].value, *places = e->arguments[1].value;
     const bool rotates = same_name(e->standard->name.substr(0, 2), "ro");
@@ -409,7 +409,7 @@ const Type* check_capacity(Checking& c, Expression*& e) {
     return &int_type;
 }
 
-/// Of T_CONV; empty: it is no conversion of or to a DTL.
+/// What T_CONV means; empty: it is no conversion of or to a DTL.
 std::string_view conversion_of_dtl(const Type& from, const Type& to) {
     if (is_dtl(from))
         return to.kind == Kind::date     ? "DTL_TO_DATE"

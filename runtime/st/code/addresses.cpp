@@ -29,7 +29,7 @@ std::uint64_t room_of(const Code& code, const Piece& piece) {
     return (code.shapes[piece.shape].bits / 8 / step + 1) * step;
 }
 
-/// Of a variable of a call, whose place others may have in other calls, the Piece counts, too.
+/// The Piece of a variable of a call counts, too: others may have its place in other calls.
 bool is_same(const Code& code, const std::byte* a, const std::byte* b) {
     const Piece *of_a = piece_of(code, a), *of_b = piece_of(code, b);
     const bool ends = of_a && of_b && (of_a->ends || of_b->ends);

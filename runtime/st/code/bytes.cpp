@@ -407,7 +407,7 @@ Fault store_value(const Code& code, const Bytes& to, std::uint64_t bit, std::uin
     return write_bytes(code, at, shape.format.bytes, bytes.data());
 }
 
-/// Of a WSTRING, whose characters take two bytes each.
+/// The characters of a WSTRING take two bytes each.
 static Fault load_units(const Code& code, const Bytes& from, std::uint64_t room, std::byte* text) {
     std::u16string units(room + 1, u'\0');
     for (std::uint64_t at = 0; at < room; ++at) {

@@ -9,7 +9,7 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of what counts the calls of an instance: this bit says that it is mocked, those below how often
+/// What counts the calls of an instance has this bit where it is mocked; those below say how often
 /// it was called.
 constexpr std::uint64_t mocked_bit = std::uint64_t{1} << 63;
 

@@ -30,7 +30,7 @@ void copy_value(Writing& w, const Location& to, const Type& type, const Expressi
     copy_value(w, to, locate(w, from), type);
 }
 
-/// Of elements whose size is not known yet it is no other's.
+/// Where the size of elements is not known yet it is no other's.
 std::uint32_t table_of(Writing& w, const IndexTable& made, bool is_late, const Type* array) {
     if (!is_late) return w.table(made);
     const auto number = static_cast<std::uint32_t>(w.code.tables.size());

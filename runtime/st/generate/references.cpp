@@ -233,7 +233,7 @@ void finish_shape(Writing& w, std::uint32_t number) {
     w.code.shapes[number] = made;
 }
 
-/// Of `?=`: to the instance itself, or NULL.
+/// `?=` makes one to the instance itself, or NULL.
 Slot attempted_reference(Writing& w, const Expression& e) {
     const Slot made = w.new_temporary(reference_slots);
     const Slot at = attempted(w, e, made);
@@ -245,7 +245,7 @@ Slot attempted_reference(Writing& w, const Expression& e) {
     return made;
 }
 
-/// Of an overlay, where a variable is seen as another type.
+/// An overlay sees a variable as another type.
 bool is_view(const Expression& refer) {
     const Expression& place = *refer.operands[0];
     return &root_of(place) == &place && place.kind != E::deref && !is_in_image(place.variable);
