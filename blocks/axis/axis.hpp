@@ -169,16 +169,16 @@ struct Axis {
         return text_of(error_id, shortage, axis_unit_names[static_cast<std::size_t>(unit)]);
     }
 
-    /// Of a command block: the job, or its changed request, is put into the inbox. Before that the
-    /// command writes the request and, at each start, the next ticket.
+    /// A command's job, or its changed request, is put into the inbox. Before that the command
+    /// writes the request and, at each start, the next ticket.
     void send(const Context& context, const Scan& now, Job& job);
 
-    /// Of MC_Power, not Enable, in its first scan: an axis that nothing has switched yet has no
+    /// MC_Power does not enable in its first scan: an axis that nothing has switched yet has no
     /// power from the start, for all that look at it later in this scan of its task.
     void begin_without_power(const Context& context);
 
     Dynamics defaults() const;
-    /// Of a request: with the defaults where it is below 0, as it says.
+    /// What a request says, with the defaults where it is below 0.
     Dynamics asked_of(const Request& request) const;
     /// The same with the override, where that counts.
     Dynamics dynamics_of(const Request& request) const;
@@ -192,7 +192,7 @@ struct Axis {
     /// The same if it were coupled so.
     std::int64_t way_to(const Context& context, const Axis& leader, const Coupling& coupling) const;
 
-    /// Of the drive where there is one, else of the set-point: position and velocity.
+    /// Position and velocity of the drive where there is one, else of the set-point.
     MotionState actual() const;
     MotionState total() const;  ///< as it is shown, but for the modulo
 

@@ -84,9 +84,9 @@ MotionError Axis::administer(const Context& context, const Moment& at, const Req
             return MotionError::none;
         case Command::write_bool_parameter:
             if (!is_bool_parameter(request.parameter)) return MotionError::no_such_parameter;
-            return write_parameter(context, request.parameter, request.position);
+            return write_parameter(context, request.parameter, request.parameter_value);
         case Command::write_parameter:
-            return write_parameter(context, request.parameter, request.position);
+            return write_parameter(context, request.parameter, request.parameter_value);
         case Command::none:
         case Command::home:
         case Command::stop:

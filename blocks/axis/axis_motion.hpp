@@ -28,8 +28,8 @@ struct Moment {
     static constexpr double same_scan = 2e-9;  ///< [s]
 };
 
-/// Of a motion that begins t < 0 seconds ago, so soon after the scan that the one before has ended
-/// with it (Moment::has_passed): its first state, on the way there. For t >= 0 the state as it is.
+/// The first state, on the way there, of a motion that begins t < 0 seconds ago, so soon after the
+/// scan that the one before has ended with it (Moment::has_passed). For t >= 0 it is as it is.
 inline MotionState before_start(MotionState state, double t) {
     state.position += std::min(t, 0.0) * state.velocity;
     return state;
@@ -50,8 +50,8 @@ Dynamics symmetric(Dynamics dynamics);
 /// A jerk of 0 is a trapezoid: acceleration that comes in a nanosecond.
 double effective_jerk(double jerk, double acceleration, double deceleration);
 
-/// Of a motion to standstill: with as much jerk, up to `most`, as it takes to be there by the time
-/// the acceleration is 0, so that it does not turn round before.
+/// Those of a motion to standstill, with as much jerk, up to `most`, as it takes to be there by the
+/// time the acceleration is 0, so that it does not turn round before.
 Dynamics without_turning(Dynamics dynamics, const MotionState& from, double most);
 
 /// To a position, and with the velocity that it has there on. In the least time from any state.

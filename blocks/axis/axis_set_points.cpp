@@ -25,7 +25,7 @@ void Axis::take_set_point(const MotionState& next, const Moment& at) {
 }
 
 void Axis::change_set_point(const Context& context, const Moment& at, const Request& request) {
-    if (request.holds == 0) return end_set_points(context, at);
+    if (request.is_enabled == 0) return end_set_points(context, at);
     take_set_point(set_point_of(request, base.position + offset), at);
 }
 

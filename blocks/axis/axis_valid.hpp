@@ -17,7 +17,7 @@ bool is_valid(const Request& request, const KeptState& machine);
 bool is_valid(const Job& job, const KeptState& machine);
 bool is_valid(MotionError error);
 
-/// Of what jobs for axes and for groups have in common.
+/// Whether what jobs for axes and for groups have in common may be so.
 bool is_valid(const JobState& job, JobFor whom, const KeptState& machine);
 /// Whether a job stands there.
 bool is_job(std::int64_t place, JobFor whom, const KeptState& machine);

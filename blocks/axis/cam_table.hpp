@@ -16,7 +16,7 @@
 
 namespace lineshaft {
 
-/// Of a cam: those of axes, their velocities and accelerations, and time. Each as AxisUnit is.
+/// A cam has those of axes, of their velocities and accelerations, and time. Each as AxisUnit is.
 enum class CamUnit : std::int64_t {
     mm,
     rad,

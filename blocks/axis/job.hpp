@@ -170,8 +170,8 @@ std::string text_of(MotionError error, const Shortage& shortage, std::string_vie
 /// it has there.
 std::string text_of_profile(const Shortage& shortage, std::string_view unit);
 
-/// Of MC_Home. `other`: there is no such mode. `signalled`: it was `on_signal`, and the signal has
-/// come.
+/// How MC_Home homes. `other`: there is no such mode. `signalled`: it was `on_signal`, and the
+/// signal has come.
 enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative, other, signalled };
 
 /// What MC_SetPosition and MC_Home make of the axis being homed. An MC_Home that leaves it
@@ -189,7 +189,8 @@ struct Request {
     double end_velocity = 0;  ///< of a continuous move [u/s]
     double acceleration = -1, deceleration = -1, jerk = -1;
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
-    std::int64_t holds = 0;     ///< Execute of MC_Stop, Enable of MC_MotionInPosition
+    std::int64_t holds = 0;                                   ///< Execute of MC_Stop
+    std::int64_t is_enabled = 0;                              ///< Enable of MC_MotionInPosition
     std::int64_t halts = 0;     ///< of MC_Phasing: where the shift can come to rest
     std::int64_t relative = 0;  ///< of MC_SetPosition
     Referencing reference = Referencing::unchanged;  ///< of MC_SetPosition, MC_Home
@@ -197,6 +198,7 @@ struct Request {
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater
     CommandRules rules = CommandRules::plcopen;
     std::int64_t parameter = 0;  ///< number, of MC_WriteParameter and MC_WriteBoolParameter
+    double parameter_value = 0;  ///< its new value, in its unit; of a BOOL 0 or 1
     HomingMode homing = HomingMode::direct;
     double velocity_factor = 1, acceleration_factor = 1, jerk_factor = 1;  ///< MC_SetOverride
     Coupling coupling;

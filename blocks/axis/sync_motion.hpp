@@ -15,7 +15,7 @@
 
 namespace lineshaft {
 
-/// Of positions that have been added to others.
+/// Positions that have been added to others are rounded so much.
 inline constexpr double sum_rounding = 0x1p-40;
 
 /// Limits upwards and downwards, of dynamics that say where the speed grows and where it falls.
@@ -59,7 +59,7 @@ struct SyncMotion {
     Coupling coupling;
     Dynamics dynamics;
 
-    // Of `geared`.
+    // `geared` alone uses these.
     Moment start;
     Transition transition;
     std::int64_t in_steps = 0;    ///< of the axis' transition_quantum, not by `transition`
@@ -68,7 +68,7 @@ struct SyncMotion {
     double offset = 0;            ///< of the slave from its guide
     double goal_offset = 0;       ///< the one that is caught up
 
-    // Of a law.
+    // A law has these.
     double direction = 1;  ///< of the master, on its way to sync_x
     double sync_x = 0, sync_y = 0;
     double cam_origin = 0;            ///< the cam's x is scaling * master + cam_origin
@@ -79,7 +79,7 @@ struct SyncMotion {
         0;  ///< of a cam that is not periodic: 1 its end, -1 its beginning, 0 both
     std::int64_t finished = 0;  ///< it has been executed
 
-    // Of an approach.
+    // An approach has these.
     Way way = Way::curve;
     CurvePoint joins;  ///< the law at sync_x
     Meeting meeting;
@@ -88,7 +88,7 @@ struct SyncMotion {
     Moment looked;    ///< when the axis looked last,
     MotionState led;  ///< and its master then
 
-    // Of the master as the slave sees it.
+    // The master is seen so by the slave.
     MotionState shift;  ///< by phasing
     PointMotion shifting;
 

@@ -173,15 +173,15 @@ MotionError AxesGroup::set_override(const Context& context, GroupJob& job) {
 
 /// Without it an axis leaves the path that it is on.
 void AxesGroup::switch_power(const Context& context, const GroupRequest& request) {
-    has_power = request.holds;
+    has_power = request.is_enabled;
     for (std::size_t i = 0; i < most_path_axes; ++i)
         if (Axis* const led = axis(context, i))
-            led->switch_power_by_group(context, {time}, request.holds != 0);
+            led->switch_power_by_group(context, {time}, has_power != 0);
 }
 
 /// Moves that have been taken up keep the one of before.
 void AxesGroup::set_transform(const GroupRequest& request) {
-    const PathVector& x = request.target;
+    const PathVector& x = request.transform;
     frame = PathFrame::of({x[0], x[1], x[2]}, {x[3], x[4], x[5]});
 }
 

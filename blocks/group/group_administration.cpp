@@ -97,7 +97,7 @@ std::span<const Field> GroupPower::fields() {
 
 void GroupPower::scan(const Scan& now, const Context& context) {
     const bool changed = !started || execute != last_execute;
-    pins.holds = execute ? 1 : 0;
+    pins.is_enabled = execute ? 1 : 0;
     last_execute = execute;
     if (changed) start(now, context);
     error = refusal != MotionError::none;
@@ -125,7 +125,7 @@ std::span<const Field> standing_fields() {
 
 std::span<const Field> transform_fields() {
     static const auto fields = [] {
-        auto shift = group_pin::coordinates("Trans", &GroupRequest::target, most_path_axes,
+        auto shift = group_pin::coordinates("Trans", &GroupRequest::transform, most_path_axes,
                                             "of the product's origin");
         constexpr std::string_view about[] = {"about the product's x, after the others",
                                               "about its y, after z", "about its z, first"};

@@ -30,7 +30,7 @@ std::string GroupCommandBlock::why(const Context&, const NameOf&) const {
 
 MotionError GroupCommandBlock::check() const {
     if (group == nowhere) return MotionError::no_group;
-    for (const PathVector& vector : {pins.target, pins.auxiliary})
+    for (const PathVector& vector : {pins.target, pins.auxiliary, pins.transform})
         for (const double part : vector)
             if (!all_finite(part)) return MotionError::not_finite;
     return all_finite(pins.corner_parameter, pins.velocity, pins.acceleration, pins.deceleration,

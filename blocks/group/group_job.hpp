@@ -41,10 +41,12 @@ struct GroupRequest {
     CircleMode circle = CircleMode::border;
     PathChoice choice = PathChoice::clockwise;
     CoordSystem coordinates = CoordSystem::machine;
-    PathVector target{};     ///< position or distance; of a transformation shift and angles [deg]
+    PathVector target{};     ///< position or distance
     PathVector auxiliary{};  ///< AuxPoint
+    PathVector transform{};  ///< of MC_SetCartesianTransform: shift [u], angles [deg]
     double velocity = -1, acceleration = -1, deceleration = -1, jerk = -1;
-    std::int64_t holds = 0;                  ///< Execute of MC_GroupStop, Enable of MC_GroupPower
+    std::int64_t holds = 0;                  ///< Execute of MC_GroupStop
+    std::int64_t is_enabled = 0;             ///< Enable of MC_GroupPower
     std::int64_t frees = 0;                  ///< FreesGroup of MC_GroupInterrupt
     std::int64_t axis = nowhere, place = 1;  ///< of MC_AddAxisToGroup; IdentInGroup
     std::int64_t table = nowhere;            ///< of MC_MovePath

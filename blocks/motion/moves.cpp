@@ -108,8 +108,8 @@ std::span<const Field> MotionInPosition::fields() {
 }
 
 void MotionInPosition::scan(const Scan& now, const Context& context) {
-    pins.holds = execute ? 1 : 0;
-    const bool goes_on = execute || job.request.holds != 0;
+    pins.is_enabled = execute ? 1 : 0;
+    const bool goes_on = execute || job.request.is_enabled != 0;
     const bool is_free = job.in == JobPlace::no_list ||
                          (job.task == context.task && job.scan == now.index);  // a second call
     if (rising_edge(execute, last_execute))

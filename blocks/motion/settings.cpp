@@ -35,13 +35,14 @@ void SetPosition::scan(const Scan& now, const Context& context) {
 
 std::span<const Field> WriteParameter::fields() {
     using B = WriteParameter;
-    static const auto table = pin::table(
-        {input("ParameterNumber", &B::pins, &Request::parameter, "",
-               "2, 3: highest, lowest_position; 4, 5: software_limits; 9, 13, 15, 17: "
-               "default_velocity, _acceleration, _deceleration, _jerk"),
-         input("Value", &B::pins, &Request::position, "", "in the unit of the axis, and seconds"),
-         pin::execution_mode()},
-        pin::done("the parameter is set"));
+    static const auto table =
+        pin::table({input("ParameterNumber", &B::pins, &Request::parameter, "",
+                          "2, 3: highest, lowest_position; 4, 5: software_limits; 9, 13, 15, 17: "
+                          "default_velocity, _acceleration, _deceleration, _jerk"),
+                    input("Value", &B::pins, &Request::parameter_value, "",
+                          "in the unit of the axis, and seconds"),
+                    pin::execution_mode()},
+                   pin::done("the parameter is set"));
     return table;
 }
 
@@ -56,7 +57,7 @@ std::span<const Field> WriteBoolParameter::fields() {
 }
 
 void WriteBoolParameter::scan(const Scan& now, const Context& context) {
-    pins.position = value ? 1 : 0;
+    pins.parameter_value = value ? 1 : 0;
     run(now, context);
 }
 

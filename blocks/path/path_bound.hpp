@@ -12,7 +12,7 @@ struct PathBound {
 
 PathBound bound_of(const PathCurve& curve, std::size_t axis);
 
-/// Of the size of the whole vector of a corner in the first three axes.
+/// That of the size of the whole vector of a corner in the first three axes.
 PathBound bound_of_corner(const PathCurve& corner);
 
 }  // namespace lineshaft

@@ -32,7 +32,7 @@ enum class PathCurveKind : std::int64_t { line, arc, corner, spline };
 ///     spline  x = origin + m u + m^2 w + m^3 slope + m^4 fourth + m^5 fifth,
 ///             m the polynomial of t with the coefficients `map`
 ///
-/// Of an arc u and w are of length 1 and stand upright on each other, and slope is of the axes that
+/// An arc's u and w are of length 1 and stand upright on each other, and slope is of the axes that
 /// follow. A corner leads from the direction u into the direction w; it begins and ends without
 /// curvature, and has half its length before the vertex, half behind it.
 struct PathCurve {
@@ -75,7 +75,7 @@ struct PathCurve {
     };
     Extent extent(std::size_t axis) const;
 
-    /// Of a line or an arc: so much less of it at its end, or at its start.
+    /// A line or an arc loses so much at its end, or at its start.
     void cut_end(double by);
     void cut_start(double by);
 };

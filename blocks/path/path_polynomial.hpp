@@ -5,7 +5,7 @@
 
 namespace lineshaft {
 
-/// Of degree five at most, the coefficient of t^k in place k.
+/// Its degree is five at most; the coefficient of t^k stands in place k.
 using PathPolynomial = std::array<double, 6>;
 
 inline PathPolynomial derivative_of(const PathPolynomial& p) {

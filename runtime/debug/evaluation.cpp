@@ -250,7 +250,7 @@ class Reckoning {
     Operand operand(const Value& value, const Named& named, bool is_narrow) const {
         using Is = lineshaft::Type;
         Operand found{.unit = std::string(named.unit)};
-        const st::Type* type = named.unit == "ns" ? &st::time_type : &st::lint_type;
+        const st::Type* type = named.is_time() ? &st::time_type : &st::lint_type;
         if (named.type == Is::real) {
             type = is_narrow ? &st::real_type : &st::lreal_type;
             found.value.real = std::get<double>(value);
@@ -333,14 +333,12 @@ class Reckoning {
         const st::Type& type = *text.seat.type;
         const st::Dialect& dialect = e.place.dialect();
         const auto place = static_cast<std::int64_t>(index);
-        const std::uint32_t room =
-            type.is_open ? static_cast<std::uint32_t>(text.value.text.size()) : type.room();
-        const auto found =
-            dialect.texts_are_bytes
-                ? st::meaning::byte_of_text(text.seat.at, place, room)
-                : st::meaning::character_of(
-                      text.seat.at, place,
-                      room | (dialect.characters_may_be_missing ? st::meaning::of_s7 : 0));
+        st::TextRoom room = type.room();
+        if (type.is_open) room = {static_cast<std::uint32_t>(text.value.text.size()), false};
+        if (dialect.characters_may_be_missing) room = room.that_may_miss();
+        const auto found = dialect.texts_are_bytes
+                               ? st::meaning::byte_of_text(text.seat.at, place, room)
+                               : st::meaning::character_of(text.seat.at, place, room);
         if (!found) throw Failed(fmt::format("'{}' has no such character", e.place.text()));
         const st::Type& of = dialect.texts_are_bytes ? st::bits_type(type.is_wide ? 16 : 8)
                              : type.is_wide          ? st::wide_char_type

@@ -45,7 +45,7 @@ std::optional<std::uint64_t> address_of(const std::byte* at, const Context& cont
     for (int i = 0; i < context.blocks; ++i) {
         const auto bytes = static_cast<std::uint64_t>(at - context.instances[i]);
         if (bytes < context.types[i]->size)
-            return (static_cast<std::uint64_t>(i) + 1) << 32 | bytes / 8;
+            return st::Address::in(static_cast<std::uint64_t>(i), bytes / 8).word();
     }
     return {};
 }
@@ -103,11 +103,11 @@ Seat instance_at(const Seat& seat) {
     const auto address = is_interface ? std::optional(read<std::uint64_t>(seat.at))
                                       : address_of(seat.at, *frame.context);
     if (is_interface && *address == 0) return {};
-    if (!address || *address >> 32 == 0) return seat;
-    const std::uint64_t number = (*address >> 32) - 1;
-    const st::KindContext* kind = st::context_of(*frame.context->types[number]);
-    const st::Type* type =
-        kind ? block_at(*kind->type, *address & 0xFFFF'FFFF, *seat.type->routine) : nullptr;
+    if (!address) return seat;
+    const st::Address place = st::Address::of(*address);
+    if (!place.is_of_program()) return seat;
+    const st::KindContext* kind = st::context_of(*frame.context->types[place.instance()]);
+    const st::Type* type = kind ? block_at(*kind->type, place.slot, *seat.type->routine) : nullptr;
     return {type ? type : seat.type, st::place_of(*address, frame.root, *frame.context), &frame};
 }
 

@@ -256,11 +256,10 @@ Seat member_at(const Seat& whole, const st::Variable& member) {
 Seat target_of(const Seat& reference, std::int64_t bytes) {
     const st::Type* to = reference.type->element;
     const auto address = read<std::uint64_t>(reference.at);
-    const auto second = read<std::uint64_t>(reference.at + 8);
-    const std::uint64_t piece = second >> 32;
+    const auto [piece, byte] = st::ByteOfPiece::of(read<std::uint64_t>(reference.at + 8));
     const st::Code& code = reference.frame->made->generated.code;
     if (!to || address == 0 || piece == 0 || piece > code.pieces.size()) return {};
-    const std::int64_t first = bytes + static_cast<std::int32_t>(second & 0xFFFF'FFFF);
+    const std::int64_t first = bytes + byte;
     const Frame& frame = *reference.frame;
     const auto place_of = [&](std::uint64_t slot) {
         return frame.seen(st::place_of(slot, frame.root, *frame.context));

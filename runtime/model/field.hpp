@@ -86,6 +86,7 @@ struct Field {
         return f;
     }
 
+    bool is_time() const { return lineshaft::is_time(type, unit); }
     bool admits(const Value& value) const {
         if (type == Type::enumeration) return names.takes(std::get<std::int64_t>(value));
         if (takes_not_finite && !std::isfinite(as_real(value))) return true;

@@ -19,13 +19,13 @@ bool is_valid(const Field& field, const std::byte* place, const KeptState& machi
     return field.type != Type::enumeration || field.names.takes(read<std::int64_t>(place));
 }
 
-}  // namespace
-
 bool fields_are_valid(const BlockType& type, const std::byte* block, const KeptState& machine) {
     return std::ranges::all_of(type.fields, [&](const Field& field) {
         return is_valid(field, block + field.offset, machine);
     });
 }
+
+}  // namespace
 
 bool is_valid(const BlockType& type, const std::byte* block, const KeptState& machine) {
     if (!fields_are_valid(type, block, machine)) return false;

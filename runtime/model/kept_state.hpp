@@ -55,10 +55,8 @@ constexpr bool is_one_of(Enumeration value, Enumeration last) {
     return value >= Enumeration{} && value <= last;
 }
 
-/// Whether booleans, enumerations and references of a block's fields are such.
-bool fields_are_valid(const BlockType& type, const std::byte* block, const KeptState& machine);
-
-/// That, and what the kind itself says.
+/// Whether booleans, enumerations and references of a block's fields are such, and what the kind
+/// itself says.
 bool is_valid(const BlockType& type, const std::byte* block, const KeptState& machine);
 
 }  // namespace lineshaft

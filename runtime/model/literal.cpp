@@ -78,7 +78,7 @@ std::optional<Value> read_integer(const Reader& read, const Node& node, const Fi
     std::optional<Wide> number;
     if (unit.text.empty()) {
         number = read.whole(node);
-    } else if (unit.text == "ns") {
+    } else if (is_time(field.type, unit.text)) {
         number = read.time(node);
     } else if (const auto value = read.real(node, unit)) {
         if (*value == std::trunc(*value) && std::abs(*value) < 9e15)

@@ -27,6 +27,11 @@ constexpr bool is_integer(Type type) {
     return type == Type::integer || type == Type::unsigned_integer;
 }
 
+/// In ns.
+constexpr bool is_time(Type type, std::string_view unit) {
+    return is_integer(type) && unit == "ns";
+}
+
 constexpr std::size_t size_of(Type type) {
     return type == Type::boolean ? 1 : 8;
 }

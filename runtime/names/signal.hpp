@@ -24,6 +24,7 @@ struct Signal {
     int task = -1;                    ///< index of the task that writes it; -1: from outside
     Port port = {};
 
+    bool is_time() const { return lineshaft::is_time(type, unit); }
     Value value() const { return load(type, slot); }
     std::string describe(const Value& v) const { return lineshaft::describe(v, type, names, unit); }
 };

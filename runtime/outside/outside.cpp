@@ -165,7 +165,7 @@ std::optional<Force> find_force(const Connecting& to, const Node& signal, const 
     return force_of(to.machine, *target, *v, value.text);
 }
 
-void connect_stimuli(Connecting& to) {
+static void connect_stimuli(Connecting& to) {
     for (const StimulusPlan& plan : to.program.stimuli) {
         const int task = plan.task ? to.net.find_task(to.read, *plan.task, plan.task->text) : -1;
         if (plan.task && task < 0) continue;
@@ -179,12 +179,12 @@ void connect_stimuli(Connecting& to) {
     }
 }
 
-void connect_forces(Connecting& to) {
+static void connect_forces(Connecting& to) {
     for (const ForcePlan& plan : to.program.forces) add_force(to, plan);
 }
 
 /// The recording's end is the run's, whatever the program says of it.
-void connect_recorded(Connecting& to) {
+static void connect_recorded(Connecting& to) {
     if (!to.program.recording) return;
     const auto& entries = to.program.recording->entries;
     to.machine.stimuli.reserve(to.machine.stimuli.size() + entries.size());

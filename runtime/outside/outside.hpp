@@ -20,10 +20,7 @@ struct Connecting {
 void connect_outside(Connecting& to);                ///< all of these
 void connect_events(Connecting& to);                 ///< outside_run.cpp: what starts event tasks
 void connect_run(Connecting& to);                    ///< likewise: duration, seed, `until`
-void connect_stimuli(Connecting& to);                ///< outside.cpp
 void connect_replays(Connecting& to);                ///< outside_replays.cpp
-void connect_forces(Connecting& to);                 ///< outside.cpp
-void connect_recorded(Connecting& to);               ///< likewise: what is played back
 void connect_retained(Connecting& to);               ///< outside_retain.cpp
 void check_constants(Connecting& to);                ///< outside_checks.cpp: what comes to nothing
 void warn_of_what_comes_late(const Connecting& to);  ///< likewise

@@ -1,3 +1,6 @@
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "runtime/program/program.hpp"
@@ -15,8 +18,6 @@ constexpr const char* trigger_help =
     "write immediate, or {signal: a.b} with edge: rising, edge: falling, above: VALUE, below: "
     "VALUE, inside: [LOW, HIGH] or equals: VALUE";
 
-constexpr const char* one_condition = "a trigger has a signal and one condition";
-
 void check_trigger(const Reader&, const Node& body, TriggerPlan& trigger) {
     struct Condition {
         const char* key;
@@ -31,6 +32,26 @@ void check_trigger(const Reader&, const Node& body, TriggerPlan& trigger) {
         if (body.find(name)) trigger.kind = kind;
     const Node* edge = body.find("edge");
     if (edge && edge->text == "falling") trigger.kind = TriggerKind::falling;
+}
+
+Rule in_trigger(Rule::Kind kind, std::vector<std::string_view> keys) {
+    return {kind,
+            {},
+            std::move(keys),
+            "a trigger has a signal and one condition",
+            trigger_help,
+            the_map,
+            code::entries_do_not_go_together};
+}
+
+Rule beside_trigger(std::string_view key) {
+    return {only_with,
+            key,
+            {"trigger"},
+            "'{1}' is for a trace with a trigger",
+            "the start of the run has nothing before it, and comes once",
+            the_key,
+            code::entries_do_not_go_together};
 }
 
 const Form& trigger_form() {
@@ -50,20 +71,8 @@ const Form& trigger_form() {
                           .within(2, 2, "'inside' has two bounds", "write inside: [LOW, HIGH]"),
                       "of a number: the lower and the upper bound"),
                   key<&TriggerPlan::values>("equals", a_value, "of any type")},
-         .rules = {{at_least_one,
-                    {},
-                    {"signal"},
-                    one_condition,
-                    trigger_help,
-                    the_map,
-                    code::entries_do_not_go_together},
-                   {exactly_one,
-                    {},
-                    {"edge", "above", "below", "inside", "equals"},
-                    one_condition,
-                    trigger_help,
-                    the_map,
-                    code::entries_do_not_go_together}},
+         .rules = {in_trigger(at_least_one, {"signal"}),
+                   in_trigger(exactly_one, {"edge", "above", "below", "inside", "equals"})},
          .check = by<check_trigger>});
     return form;
 }
@@ -75,9 +84,6 @@ void read_trigger(const Reader& read, const Node& node, TracePlan& trace) {
         read.fail(code::no_allowed_name, node, fmt::format("'{}' is not a trigger", node.text),
                   trigger_help);
 }
-
-constexpr const char* triggered = "'{1}' is for a trace with a trigger";
-constexpr const char* start_only = "the start of the run has nothing before it, and comes once";
 
 /// The ring's size in memory is checked where the signals are known.
 void read_pre_trigger(const Reader& read, const Node& node, TracePlan& trace) {
@@ -122,20 +128,8 @@ const Form& trace_form() {
                   "repeat", an_integer.within(1, 1000),
                   "measurements at most; of several, each in a file of its own: out.change.1.csv")
                   .by_default("1")},
-         .rules = {{only_with,
-                    "pre_trigger",
-                    {"trigger"},
-                    triggered,
-                    start_only,
-                    the_key,
-                    code::entries_do_not_go_together},
-                   {only_with,
-                    "repeat",
-                    {"trigger"},
-                    triggered,
-                    start_only,
-                    the_key,
-                    code::entries_do_not_go_together},
+         .rules = {beside_trigger("pre_trigger"),
+                   beside_trigger("repeat"),
                    {only_with,
                     "repeat",
                     {"samples", "for"},

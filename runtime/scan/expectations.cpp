@@ -36,7 +36,7 @@ std::optional<Value> read_tolerance(const Connecting& to, const Signal& signal, 
                                  kind(signal.type, signal.names)));
         return {};
     }
-    const bool time = is_integer(signal.type) && signal.unit == "ns" && !is_share(node);
+    const bool time = signal.is_time() && !is_share(node);
     const auto given = parse_quantity(node.text);
     const auto* quantity = std::get_if<Quantity>(&given);
     const bool whole = is_integer(signal.type) && signal.unit.empty() && quantity &&

@@ -60,7 +60,7 @@ std::string as_in_a_program(std::string_view text, const Field& field) {
         if (truth == "false" || truth == "0") return "false";
     } else if (field.type == Type::real) {
         if (const auto real = st::read_real(bare)) return fmt::format("{}", *real);
-    } else if (field.unit == "ns") {
+    } else if (field.is_time()) {
         if (const auto time = read_time(type, bare)) return st::to_string(*time) + " ns";
     } else {
         const std::size_t sign = bare.starts_with('-') ? 1 : 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -101,19 +102,20 @@ char32_t of_windows_1252(unsigned char byte) {
     return byte >= 0x80 && byte < 0xA0 ? windows_1252[byte - 0x80] : byte;
 }
 
+static bool is_among(std::span<const std::string_view> endings, std::string_view ending) {
+    return std::ranges::find(endings, ending) != endings.end();
+}
+
 bool is_structured_text(const std::filesystem::path& file) {
-    static constexpr std::string_view extensions[] = {
-        ".st", ".scl", ".s7dcl", ".udt", ".db", ".exp", ".typ", ".var", ".fun", ".iecst", ".iec"};
+    static constexpr std::string_view of_vendors[] = {".scl", ".s7dcl", ".udt", ".db",
+                                                      ".exp", ".typ",   ".var", ".fun"};
     const std::string extension = lower(file.extension().string());
-    return std::ranges::find(extensions, extension) != std::end(extensions) ||
+    return is_among(standard_endings, extension) || is_among(of_vendors, extension) ||
            (has_name_of_any_text(file) && is_text_with_unit(file));
 }
 
 bool has_name_of_any_text(const std::filesystem::path& file) {
-    static constexpr std::string_view extensions[] = {
-        ".txt", ".text", ".il", ".pou", ".plc", ".stl", ".structuredtext"};
-    const std::string extension = lower(file.extension().string());
-    return std::ranges::find(extensions, extension) != std::end(extensions);
+    return is_among(any_text_endings, lower(file.extension().string()));
 }
 
 std::string as_utf8(std::string bytes) {

@@ -6,6 +6,12 @@
 
 namespace lineshaft {
 
+/// How names of files end that are read as the standard has it, and of those that may have
+/// anything.
+inline constexpr std::string_view standard_endings[] = {".st", ".iecst", ".iec"};
+inline constexpr std::string_view any_text_endings[] = {
+    ".txt", ".text", ".il", ".pou", ".plc", ".stl", ".structuredtext"};
+
 /// Whether the file's name ends as one of Structured Text does, or as that of any text, and it
 /// begins with a unit of the language, behind comments, and has the end of one.
 bool is_structured_text(const std::filesystem::path& file);

@@ -64,7 +64,8 @@ std::string_view outcome(const CaseResult& result) {
 
 }  // namespace
 
-std::string join_cells(const std::vector<std::string>& cells) {
+/// RFC 4180, one line: cells in double quotes where they hold a comma or a quote.
+static std::string join_cells(const std::vector<std::string>& cells) {
     std::string line;
     for (const std::string& cell : cells) {
         if (&cell != &cells.front()) line += ',';
@@ -73,7 +74,7 @@ std::string join_cells(const std::vector<std::string>& cells) {
     return line;
 }
 
-std::vector<std::string> split_cells(std::string_view line) {
+static std::vector<std::string> split_cells(std::string_view line) {
     std::vector<std::string> cells{""};
     bool inside = false;
     for (std::size_t i = 0; i < line.size(); ++i) {

@@ -68,8 +68,4 @@ class StudyCsv {
     bool named_ = false, repeats_ = false;
 };
 
-/// RFC 4180, one line: cells in double quotes where they hold a comma or a quote.
-std::string join_cells(const std::vector<std::string>& cells);
-std::vector<std::string> split_cells(std::string_view line);
-
 }  // namespace lineshaft

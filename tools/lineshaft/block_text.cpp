@@ -86,16 +86,15 @@ std::string example_name(std::string_view type) {
 }
 
 /// `1 mm/s` of `{unit}/s`: with the block's own default unit, with mm of what it refers to.
-std::string example_number(const BlockType& type, const Fresh& fresh, std::string_view unit,
+std::string example_number(const BlockType& type, const Fresh& fresh, const Field& field,
                            std::string_view number) {
-    std::string text(unit);
+    std::string text(field.is_time() ? "s" : field.unit);
     for (std::size_t at = text.find('{'); at != std::string::npos; at = text.find('{', at)) {
         const std::size_t end = text.find('}', at);
         const Field* chosen = type.find_settable(text.substr(at + 1, end - at - 1));
         const bool is_own = chosen && !is_reference(*chosen);
         text.replace(at, end + 1 - at, is_own ? fresh.text(*chosen) : "mm");
     }
-    if (text == "ns") text = "s";
     if (text.starts_with("/") || text.starts_with("^")) text.clear();  // of a plain number
     return text.empty() ? std::string(number) : fmt::format("{} {}", number, text);
 }
@@ -114,7 +113,7 @@ std::string example_value(const BlockType& type, const Fresh& fresh, const Field
     if (field.name == "CamTableID") return "my_cam_table_select.CamTableID";
     if (field.type == Type::boolean) return "inputs.go";
     if (field.type == Type::enumeration) return std::string(written(field.names.front()));
-    return example_number(type, fresh, field.unit, field.name == "low" ? "0" : "1");
+    return example_number(type, fresh, field, field.name == "low" ? "0" : "1");
 }
 
 /// What the block is for, if it need not be said.
@@ -134,7 +133,7 @@ std::string example_rows(const BlockType& type, const Fresh& fresh, const TableF
         std::string row;
         for (const Field& column : table.columns.first(columns)) {
             const std::string text = fmt::format("{}", std::max(number, column.minimum));
-            row += (row.empty() ? "" : ", ") + example_number(type, fresh, column.unit, text);
+            row += (row.empty() ? "" : ", ") + example_number(type, fresh, column, text);
         }
         rows += fmt::format("{}[{}]", rows.empty() ? "" : ", ", row);
     }

@@ -6,7 +6,7 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of TYPE_CLASS, without `TYPE_`: that of a kind of type; a number's and a time's say their size.
+/// TYPE_CLASS calls a kind of type so, behind `TYPE_`; those of numbers and times say their size.
 struct TypeClass {
     Kind kind;
     std::string_view name;

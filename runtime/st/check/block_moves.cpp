@@ -92,7 +92,7 @@ Statement* fill(Checking& c, const Statement& s, Expression* value, Expression* 
     return loop;
 }
 
-/// Of a structure all of whose members are of one elementary type.
+/// It is a member of a structure all of whose members are of one elementary type.
 bool is_alike(const Expression& e) {
     if (e.kind != E::member || !e.variable) return false;
     const Type* of = e.operands[0]->type;

@@ -381,7 +381,7 @@ static void name_instance_of_block(Checking& c, Expression*& e) {
         e = make_call(c, *e, instance, e->arguments);
 }
 
-/// Of the standard.
+/// It is a call of what the standard has.
 static const Type* check_function(Checking& c, Expression*& e, const Type* expected) {
     if (const auto given = check_variant_call(c, e)) return *given;
     if (const auto given = check_reference_call(c, e, expected)) return *given;

@@ -80,7 +80,7 @@ const Type* type_of(Checking& c, const NamedKind& named, const Field& field) {
     if (referred && !referred->handle.empty()) return standard_type(c, referred->handle);
     if (named.data_type && field.direction != Direction::parameter)
         return find_elementary(named.data_type->names[named.number]);
-    return field.unit == "ns" ? &time_type : &lint_type;
+    return field.is_time() ? &time_type : &lint_type;
 }
 
 }  // namespace

@@ -381,7 +381,7 @@ Routine* find_accessor(Checking& c, const Expression& e, Accessor accessor) {
     return is_own_variable(c, e.token) ? nullptr : in(*block);
 }
 
-/// Of a call of a PROPERTY's method: what stands before the point, or THIS.
+/// What stands before the point of a call of a PROPERTY's method, or THIS.
 static const Expression& receiver_of(Checking& c, const Expression& property) {
     if (property.kind == E::member) return *property.operands[0];
     Expression* own = make_name(c, property, "this");

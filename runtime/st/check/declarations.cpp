@@ -441,7 +441,8 @@ const std::vector<Argument>* constructor_arguments(const TypeText* text, const T
 void keep_once(Checking& c, Variable& variable) {
     if (!c.statics) {
         c.statics = &c.make_type(Kind::structure, "statics");
-        c.checked.globals.push_back({c.statics->name, c.statics});
+        c.checked.globals.push_back(
+            {.name = c.statics->name, .type = c.statics, .is_statics = true});
     }
     const auto global = std::ranges::find(c.checked.globals, c.statics, &Global::type);
     variable.section = Section::global;

@@ -119,7 +119,7 @@ Expression* system_call(Checking& c, const Expression& like, std::string_view fu
                       {.name = named("taken"), .value = use_of(c, like, taken)}});
 }
 
-/// Of a new one, in statements: it begins as its type says, then FB_init is called.
+/// How a new one begins, in statements: as its type says, then FB_init is called.
 Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, Variable& first,
                      Variable& counter, Expression* count, const std::vector<Argument>* values) {
     const Type& type = *pool.type;

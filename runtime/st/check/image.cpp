@@ -104,7 +104,7 @@ bool takes_size(Checking& c, const Variable& variable, ImageAddress& address, co
     return true;
 }
 
-/// Of the bits that a variable has there.
+/// The area has all bits that the variable has.
 bool fits(Checking& c, const Variable& variable, ImageAddress& address, const Token& at) {
     const Type& type = *variable.type;
     const std::uint64_t bits = packed_bits(type, at.place.dialect());

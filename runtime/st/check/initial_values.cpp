@@ -202,7 +202,7 @@ void check_excess(Checking& c, Expression& list, Wide count, Wide room) {
     leave_excess_out(list, room);
 }
 
-/// Of several dimensions either a list of lists, or all elements in one, the last index first.
+/// Several dimensions have either a list of lists, or all elements in one, the last index first.
 void check_elements(Checking& c, Expression& list, const Type& array) {
     group_elements(c, list, array);
     const Elements elements{array, !list.is_nested()};

@@ -263,7 +263,7 @@ bool is_ambiguous(Checking& c, const Token& token, const Variable& variable) {
     return true;
 }
 
-/// Of a base, what that does not keep to itself.
+/// A variable of a base is one unless that keeps it to itself.
 bool is_own_to_name(Checking& c, const Token& token, const Variable& variable) {
     if (variable.access != Access::private_ || !variable.of) return true;
     const Routine* block = c.routine && c.routine->owner ? c.routine->owner : c.routine;

@@ -33,7 +33,7 @@ std::string find_namespace(const Checking& c, Place place, std::string_view name
     return is_namespace(c, name) ? std::string(name) : std::string();
 }
 
-/// Of its own libraries, which come with it.
+/// One of its own libraries, which come with it, has that name.
 bool is_of_ax(std::string_view path) {
     const std::string name = lower(path);
     return name.starts_with("system.") || name.starts_with("siemens.simatic.");

@@ -36,7 +36,7 @@ void check_masks(Checking& c, Expression& e, const Type* expected) {
     }
 }
 
-/// Of CODESYS an enumeration's value is its number to a sign and to what works on bits, too.
+/// In CODESYS an enumeration's value is its number to a sign and to what works on bits, too.
 void take_number_of_enumeration(Checking& c, Expression*& operand) {
     if (operand->place.dialect().enumerations_are_numbers && !operand->type->is_strict)
         enumeration_becomes_number(c, operand);
@@ -86,7 +86,7 @@ void take_numbers(Checking& c, Expression& e, bool always) {
             enumeration_becomes_number(c, e.operands[i]);
 }
 
-/// Of B&R a BOOL is 0 or 1 beside a number, and to what reckons.
+/// In B&R a BOOL is 0 or 1 beside a number, and to what reckons.
 void take_truths(Checking& c, Expression& e, bool always) {
     for (const int i : {0, 1}) {
         const Type& other = e.operands[1 - i]->type->plain();

@@ -3,7 +3,6 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "runtime/source/letters.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 
@@ -317,10 +316,10 @@ void order_routines(Checking& c) {
     tell_of_rounds(c, o.rounds);
 }
 
-/// Of a library of Automation Studio, whose bodies are compiled: a `.fun` alone declares it.
+/// It is of a library of Automation Studio, whose bodies are compiled: a `.fun` alone declares it.
 static bool is_declared_alone(const Pou& unit) {
     return unit.body.empty() && unit.methods.empty() && unit.place.source &&
-           lower(unit.place.source->file->path).ends_with(".fun");
+           unit.place.source->has_no_bodies();
 }
 
 void warn_of_unused(Checking& c) {

@@ -86,8 +86,9 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     if (const auto& first = call.arguments[0].name.text;
         f.typing == Typing::reals && lower(first).starts_with("in"))
         names = {"IN1", "IN2"};  // of ATAN2, in the standard's second edition
-    const bool has_else = find_called(call.arguments, "inelse", &Argument::name);
-    if (f.typing == Typing::chosen && f.most > f.least && has_else) names.back() = "INELSE";
+    const bool has_else = f.typing == Typing::chosen && f.most > f.least &&
+                          find_called(call.arguments, "inelse", &Argument::name);
+    if (has_else) names.back() = "INELSE";
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
         const bool is_simatic_ax = lower(argument.name.text).starts_with("string");
@@ -111,6 +112,7 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
         sorted[static_cast<std::size_t>(it - names.begin())] = argument;
     }
     e = make_with(c, call, std::move(sorted));
+    e->has_else = has_else;
     return true;
 }
 

@@ -11,15 +11,15 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of a number without type and one with; one of them is real. `real` is what the first is beside
-/// an integer.
+/// One number is without type, the other with; one of them is real. `real` is what the first is
+/// beside an integer.
 const Type* mixed(const Type& a, const Type& b, const Type& real) {
     if (a.is_any() && b.is_any()) return a.is_real() ? &a : &b;
     const Type &any = a.is_any() ? a : b, &typed = a.is_any() ? b : a;
     return any.is_real() ? common_type(typed, real) : &typed;
 }
 
-/// Of a bit string and an integer: that of the numbers.
+/// A bit string beside an integer is taken for the number.
 const Type* common_number(const Type& a, const Type& b, const Place& place) {
     const auto number = [](const Type& type) -> const Type& {
         return type.kind == Kind::bits ? integer_type(type.bits, false) : type;
@@ -57,7 +57,7 @@ const Type& type_of_bound(const Expression& call, const Type* expected) {
     return is_due ? expected->plain() : dint_type;
 }
 
-/// Of the dimension that a variable says: MUX over those of all, whose fault a dimension that there
+/// A variable says the dimension: MUX over those of all, whose fault a dimension that there
 /// is not stays in every dialect.
 const Type* check_chosen_bound(Checking& c, Expression*& e, const Type& result) {
     const bool is_lower = e->standard->typing == Typing::lower_bound;
@@ -169,7 +169,7 @@ bool coerce_from(Checking& c, Expression& call, std::size_t first, const Type& t
     return good;
 }
 
-/// Of an enumeration with numbers what these are, where that is not all there is.
+/// An enumeration with numbers is what these are, where that is not all there is.
 const Type& number_type(const Type& type, const Type& other) {
     return type.has_numbers && !same_type(type, other) ? *type.base : type;
 }
@@ -279,16 +279,18 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
 }
 
 /// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.
-void choose_of_others(Checking& c, Expression& call, const Type* type) {
-    const OtherChoice other = call.place.dialect().other_choice;
-    const bool has_else = same_name(call.arguments.back().name.text, "inelse");
-    if (!type || has_else || other == OtherChoice::fault) return;
+void choose_of_others(Checking& c, Expression*& e, const Type* type) {
+    const OtherChoice other = e->place.dialect().other_choice;
+    if (!type || e->has_else || other == OtherChoice::fault) return;
+    std::vector<Argument> inputs = e->arguments;
     if (other == OtherChoice::initial && (type->is_scalar() || type->kind == Kind::text))
-        call.arguments.push_back({{}, false, make_constant(c, call, *type, {}), nullptr});
-    call.arguments.back().name.text = "inelse";
+        inputs.push_back({.value = make_constant(c, *e, *type, {})});
+    e = make_with(c, *e, std::move(inputs));
+    e->has_else = true;
 }
 
-const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
+const Type* check_chosen(Checking& c, Expression*& e, const Type* expected) {
+    Expression& call = *e;
     Expression*& choice = call.arguments[0].value;
     if (call.standard->parameters[0].type == Generic::boolean)
         return coerce(c, choice, bool_type) ? unite_from(c, call, 1, expected) : nullptr;
@@ -297,7 +299,7 @@ const Type* check_chosen(Checking& c, Expression& call, const Type* expected) {
     if (choice->type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
     const Type* type = unite_from(c, call, 1, expected);
-    choose_of_others(c, call, type);
+    choose_of_others(c, e, type);
     return type;
 }
 
@@ -326,7 +328,7 @@ bool fold_shift(Checking& c, Expression*& e) {
     return become(c, e, any_integer_type, {.integer = shifted});
 }
 
-/// Of one bit a shift by any place but 0 is FALSE, and a rotation nothing.
+/// A shift of one bit by any place but 0 is FALSE, and its rotation does nothing.
 const Type* check_shift_of_truth(Checking& c, Expression*& e) {
     Expression *given = e->arguments[0].value, *places = e->arguments[1].value;
     const bool rotates = same_name(e->standard->name.substr(0, 2), "ro");
@@ -407,7 +409,7 @@ const Type* check_capacity(Checking& c, Expression*& e) {
     return &int_type;
 }
 
-/// Of T_CONV; empty: it is no conversion of or to a DTL.
+/// What T_CONV means; empty: it is no conversion of or to a DTL.
 std::string_view conversion_of_dtl(const Type& from, const Type& to) {
     if (is_dtl(from))
         return to.kind == Kind::date     ? "DTL_TO_DATE"
@@ -459,7 +461,7 @@ const Type* standard_type_of(Checking& c, Expression*& e, const Type* expected) 
         case Typing::scaled: return check_scale(c, e, expected);
         case Typing::own:
         case Typing::common: return check_common(c, e, expected);
-        case Typing::chosen: return check_chosen(c, call, expected);
+        case Typing::chosen: return check_chosen(c, e, expected);
         case Typing::places: return fold_shift(c, e) ? e->type : check_places(c, e, expected);
         case Typing::bits: return check_bits(c, call, expected);
         case Typing::bit_number: return check_bit_number(c, call, expected);

@@ -112,7 +112,7 @@ bool is_read_freely(const Expression& e) {
     return e.kind == E::name || (e.kind == E::member && is_read_freely(*e.operands[0]));
 }
 
-/// Of texts, which SIMATIC AX has: `IF text = 'a' OR text = 'b' THEN ... ELSIF`.
+/// SIMATIC AX has a CASE of texts: `IF text = 'a' OR text = 'b' THEN ... ELSIF`.
 void rewrite_case_of_texts(Checking& c, Statement*& s) {
     if (!check_labels_of_texts(c, s->branches)) return;
     const Expression* selector = s->value;

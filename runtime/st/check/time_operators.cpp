@@ -28,7 +28,7 @@ const Type* become_date(Checking& c, Expression*& e, const Type& type) {
     return is_whole ? convert(c, e, type) : e->type;
 }
 
-/// Of a TIME beside a DT whole seconds count there.
+/// Whole seconds of a TIME beside a DT count there.
 void become_whole_seconds(Checking& c, Expression*& time, const Type& moment) {
     if (time->place.dialect().dates_count_seconds && !moment.counts_ns)
         convert(c, time, moment_type);

@@ -20,7 +20,7 @@ std::byte* place_of(const NumberedAddresses& known, std::uint64_t place) {
 }
 
 const Piece* piece_of(const Code& code, const std::byte* reference) {
-    const std::uint64_t number = word(reference, 1) >> 32;
+    const std::uint32_t number = ByteOfPiece::of(word(reference, 1)).piece;
     return number == 0 || number > code.pieces.size() ? nullptr : &code.pieces[number - 1];
 }
 
@@ -29,7 +29,7 @@ std::uint64_t room_of(const Code& code, const Piece& piece) {
     return (code.shapes[piece.shape].bits / 8 / step + 1) * step;
 }
 
-/// Of a variable of a call, whose place others may have in other calls, the Piece counts, too.
+/// The Piece of a variable of a call counts, too: others may have its place in other calls.
 bool is_same(const Code& code, const std::byte* a, const std::byte* b) {
     const Piece *of_a = piece_of(code, a), *of_b = piece_of(code, b);
     const bool ends = of_a && of_b && (of_a->ends || of_b->ends);
@@ -90,9 +90,9 @@ bool is_more(const Code& code, const Piece& piece, const Piece* known) {
 
 std::optional<std::uint64_t> number_of_reference(const Code& code, const std::byte* reference,
                                                  const NumberedAddresses& known) {
-    const auto bytes = static_cast<std::int32_t>(static_cast<std::uint32_t>(word(reference, 1)));
+    const ByteOfPiece to = ByteOfPiece::of(word(reference, 1));
     const Piece* piece = piece_of(code, reference);
-    if (!piece) return static_cast<std::uint64_t>(std::int64_t{bytes});
+    if (!piece) return static_cast<std::uint64_t>(std::int64_t{to.byte});
     const auto place = find_place(code, known, reference);
     if (!place) return {};
     std::byte* here = place_of(known, *place);
@@ -101,10 +101,10 @@ std::optional<std::uint64_t> number_of_reference(const Code& code, const std::by
     if (!number) return {};
     if (is_new || is_more(code, *piece, piece_of(code, here))) {
         set_word(here, 0, word(reference, 0));
-        set_word(here, 1, word(reference, 1) >> 32 << 32);
+        set_word(here, 1, ByteOfPiece{to.piece}.word());
         set_word(here, 2, word(reference, 2));
     }
-    return *number + static_cast<std::uint64_t>(std::int64_t{bytes});
+    return *number + static_cast<std::uint64_t>(std::int64_t{to.byte});
 }
 
 void find_reference(const Code& code, std::uint64_t number, const NumberedAddresses& known,
@@ -125,7 +125,8 @@ void find_reference(const Code& code, std::uint64_t number, const NumberedAddres
     const std::uint64_t bytes = number - number_at(known, place);
     if (!piece || bytes >= room_of(code, *piece)) return;
     set_word(reference, 0, word(found, 0));
-    set_word(reference, 1, word(found, 1) | bytes);
+    const std::uint32_t number_of_piece = ByteOfPiece::of(word(found, 1)).piece;
+    set_word(reference, 1, ByteOfPiece{number_of_piece, static_cast<std::int32_t>(bytes)}.word());
     set_word(reference, 2, word(found, 2));
 }
 

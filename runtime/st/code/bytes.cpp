@@ -313,7 +313,8 @@ Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::
                       });
 }
 
-Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count, const std::byte* from) {
+static Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count,
+                         const std::byte* from) {
     const auto first = static_cast<std::uint64_t>(to.first);
     return visit_runs(code, to, count, false, is_nothing,
                       [&](const Run& run, std::uint64_t at, std::uint64_t bytes) {
@@ -406,7 +407,7 @@ Fault store_value(const Code& code, const Bytes& to, std::uint64_t bit, std::uin
     return write_bytes(code, at, shape.format.bytes, bytes.data());
 }
 
-/// Of a WSTRING, whose characters take two bytes each.
+/// The characters of a WSTRING take two bytes each.
 static Fault load_units(const Code& code, const Bytes& from, std::uint64_t room, std::byte* text) {
     std::u16string units(room + 1, u'\0');
     for (std::uint64_t at = 0; at < room; ++at) {
@@ -420,10 +421,9 @@ static Fault load_units(const Code& code, const Bytes& from, std::uint64_t room,
     return Fault::none;
 }
 
-static Fault store_units(const Code& code, const Bytes& to, std::uint64_t room,
-                         const std::byte* text) {
+static Fault store_units(const Code& code, const Bytes& to, TextRoom room, const std::byte* text) {
     const std::string_view whole(reinterpret_cast<const char*>(text + 8), slot_value(text));
-    const std::u16string units = units_of(whole.substr(0, kept_bytes(whole, of_units | room)));
+    const std::u16string units = units_of(whole.substr(0, kept_bytes(whole, room)));
     return write_bytes(code, to, 2 * (units.size() + 1),
                        reinterpret_cast<const std::byte*>(units.c_str()));
 }
@@ -453,7 +453,7 @@ Fault load_text(const Code& code, const Bytes& from, std::uint32_t number, std::
 
 Fault store_text(const Code& code, const Bytes& to, std::uint32_t number, const std::byte* text) {
     const Shape& shape = code.shapes[number];
-    if (shape.type->is_wide) return store_units(code, to, shape.type->length, text);
+    if (shape.type->is_wide) return store_units(code, to, shape.type->room(), text);
     const std::uint64_t room = shape.type->length, length = std::min(slot_value(text), room);
     const std::byte end{0},
         header[2] = {static_cast<std::byte>(room), static_cast<std::byte>(length)};

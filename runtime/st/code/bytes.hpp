@@ -24,7 +24,6 @@ bool is_inside(const Code& code, const Bytes& bytes, std::uint64_t count);
 /// `out_of_range`: what would stand there then is no value of its type.
 /// `outside_of_variable`: the bytes are not, or not to be had.
 Fault read_bytes(const Code& code, const Bytes& from, std::uint64_t count, std::byte* to);
-Fault write_bytes(const Code& code, const Bytes& to, std::uint64_t count, const std::byte* from);
 
 /// As if all were read before the first is written.
 Fault copy_bytes(const Code& code, const Bytes& to, const Bytes& from, std::uint64_t count);

@@ -38,7 +38,7 @@ std::string operand_error(const Code& code, const CodeRoutine& routine, char kin
     }
 }
 
-/// Of its table; empty if they are not there.
+/// Those of its table; empty if they are not there.
 std::span<const std::int64_t> numbers_of(const Code& code, const Instruction& in) {
     const auto& [lower, count, stride, first] = code.tables[in.c];
     if (first > code.numbers.size() || count > code.numbers.size() - first) return {};

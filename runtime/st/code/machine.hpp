@@ -40,13 +40,6 @@ class Probe {
     std::vector<std::uint32_t> marks_;
 };
 
-/// Where an address leads, in a scan of the instance at `root`.
-template <class Byte>
-Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
-    const std::uint64_t space = address >> 32;
-    return (space == 0 ? root : context.instances[space - 1]) + 8 * (address & 0xFFFF'FFFF);
-}
-
 /// What all scans of the instances of a kind begin with.
 struct ScanStart {
     const Code* code = nullptr;

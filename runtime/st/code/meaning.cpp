@@ -12,18 +12,13 @@ namespace lineshaft::st::meaning {
 
 namespace {
 
-std::int32_t bytes_from_first(const std::byte* reference) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(word(reference, 1)));
-}
-
-/// 0 of none, else the number of its Piece plus 1.
-std::uint64_t piece_of(const std::byte* reference) {
-    return word(reference, 1) >> 32;
+ByteOfPiece byte_of_piece(const std::byte* reference) {
+    return ByteOfPiece::of(word(reference, 1));
 }
 
 /// Whatever it is called: THIS of an instance is where the variable is that has it.
 auto where(const std::byte* reference) {
-    return std::pair(word(reference, 0), bytes_from_first(reference));
+    return std::pair(word(reference, 0), byte_of_piece(reference).byte);
 }
 
 static_assert(sizeof(Frames::Record) == 8 * record_end);
@@ -70,12 +65,11 @@ void write_truth(std::byte* to, bool value) {
     write_text(to, value ? "TRUE" : "FALSE");
 }
 
-void write_time(std::byte* to, std::uint64_t kind, std::int64_t value) {
-    fmt::memory_buffer text;
-    const Wide time = (kind & of_unsigned) != 0 ? Wide{static_cast<std::uint64_t>(value)} : value;
-    add_time(text, static_cast<Type::Kind>(kind & 0xFF), time,
-             static_cast<TimeForm>(kind / time_forms & 0xF));
-    write_text(to, {text.data(), text.size()});
+void write_time(std::byte* to, std::uint32_t text, std::int64_t value) {
+    const auto [kind, form, is_unsigned] = TimeText::of_number(text);
+    fmt::memory_buffer made;
+    add_time(made, kind, is_unsigned ? Wide{static_cast<std::uint64_t>(value)} : value, form);
+    write_text(to, {made.data(), made.size()});
 }
 
 void write_bits(std::byte* to, std::uint64_t value) {
@@ -108,11 +102,11 @@ std::int64_t time_of_text(std::uint64_t kind, const std::byte* from) {
 }
 
 bool move_reference(std::byte* to, const std::byte* from, std::int64_t by) {
-    std::int32_t bytes = 0;
-    if (__builtin_add_overflow(std::int64_t{bytes_from_first(from)}, by, &bytes)) return false;
-    const std::uint64_t address = word(from, 0), piece = piece_of(from), call = word(from, 2);
+    ByteOfPiece moved = byte_of_piece(from);
+    if (__builtin_add_overflow(std::int64_t{moved.byte}, by, &moved.byte)) return false;
+    const std::uint64_t address = word(from, 0), call = word(from, 2);
     set_word(to, 0, address);
-    set_word(to, 1, piece << 32 | static_cast<std::uint32_t>(bytes));
+    set_word(to, 1, moved.word());
     set_word(to, 2, call);
     return true;
 }
@@ -123,8 +117,9 @@ std::int64_t compare_references(const std::byte* a, const std::byte* b) {
 }
 
 std::optional<std::int64_t> reference_distance(const std::byte* a, const std::byte* b) {
-    if (word(a, 0) != word(b, 0) || piece_of(a) != piece_of(b)) return {};
-    return std::int64_t{bytes_from_first(a)} - bytes_from_first(b);
+    const ByteOfPiece of_a = byte_of_piece(a), of_b = byte_of_piece(b);
+    if (word(a, 0) != word(b, 0) || of_a.piece != of_b.piece) return {};
+    return std::int64_t{of_a.byte} - of_b.byte;
 }
 
 bool Frames::find(std::byte* to, std::uint64_t address, std::uint32_t method) const {
@@ -330,17 +325,17 @@ bool Frames::goes_on(const Piece& piece, const std::byte* reference, std::uint64
 
 Fault Frames::told(Fault fault, const std::byte* reference) const {
     if (fault == Fault::outside_of_variable || fault == Fault::call_has_ended)
-        set_word(root, code.left_slot(), piece_of(reference));
+        set_word(root, code.left_slot(), byte_of_piece(reference).piece);
     return fault;
 }
 
 Fault Frames::find(const std::byte* reference, std::uint64_t next, Bytes& found) const {
-    const std::uint64_t number = piece_of(reference);
-    if (number == 0) return Fault::no_reference;
-    const Piece& piece = code.pieces[number - 1];
+    const ByteOfPiece to = byte_of_piece(reference);
+    if (to.piece == 0) return Fault::no_reference;
+    const Piece& piece = code.pieces[to.piece - 1];
     if (piece.ends && !goes_on(piece, reference, next))
         return told(Fault::call_has_ended, reference);
-    found = {piece.shape, place(word(reference, 0)), bytes_from_first(reference)};
+    found = {piece.shape, place(word(reference, 0)), to.byte};
     return Fault::none;
 }
 

@@ -209,46 +209,34 @@ bool next(std::byte* counter, const std::byte* limit) {
 
 std::string_view text_at(const std::byte* place);
 
-/// `room` of a text is bytes, or units (types/wide_text.hpp). False: it was cut.
-bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room);
+/// False: it was cut.
+bool copy_text(std::byte* to, const std::byte* from, TextRoom room);
 /// The text of a WSTRING as that of a STRING of bytes, or back, where there is room for units.
-void recode_text(std::byte* to, const std::byte* from, std::uint32_t room);
-bool is_too_long(const std::byte* text, std::uint64_t room);
+void recode_text(std::byte* to, const std::byte* from, TextRoom room);
+bool is_too_long(const std::byte* text, TextRoom room);
 std::uint64_t length_of_text(const std::byte* text, bool in_units);
 
 /// Puts characters of `from`, from `first` (0) on, behind a text that has `room`;
 /// false where that cuts them short.
 bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
-                 std::uint32_t room);
+                 TextRoom room);
 
 /// -1, 0 or 1: the size of what std::memcmp returns depends on where the texts are.
 std::int64_t compare_texts(const std::byte* a, const std::byte* b);
 
-/// What a time that becomes a text has beside its kind: the number of its TimeForm times this, and
-/// that it has no sign.
-inline constexpr std::uint32_t time_forms = 0x100, of_unsigned = 0x1000;
-
-/// In a number of room: what is no character of the text is read as 0 and not written, but for one
-/// right behind its end.
-inline constexpr std::uint32_t of_s7 = std::uint32_t{1} << 30;
-/// In a number of room: a character right behind the end of the text is put there.
-inline constexpr std::uint32_t grows = std::uint32_t{1} << 29;
-
 /// The one numbered `place` (from 1) of a text that has room for so many: 0 behind its end.
-std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
-                                          std::uint32_t room);
+std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place, TextRoom room);
 
 /// A 0 ends the text there. False if the text is shorter.
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room);
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, TextRoom room);
 
 /// The byte at `place` (from 0) of a text that has room for so many and the 0 that ends it; behind
 /// its end it is 0.
-std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
-                                          std::uint64_t room);
+std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place, TextRoom room);
 
 /// As where texts are bytes with a 0 behind them: a 0 ends the text, another one behind its end
 /// goes on with it as far as no 0 stands there. False for a place that it has no room for.
-bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room);
+bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, TextRoom room);
 
 /// The first place, counted from 1, or 0.
 std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_units);
@@ -290,7 +278,8 @@ std::uint64_t truth_of_text(const std::byte* from, bool is_strict);
 /// TRUE or FALSE.
 void write_truth(std::byte* to, bool value);
 
-void write_time(std::byte* to, std::uint64_t kind, std::int64_t value);
+/// `text`: the number of a TimeText.
+void write_time(std::byte* to, std::uint32_t text, std::int64_t value);
 
 /// As MatIEC writes them: '16#ff', ten digits of a real number, 'T#0d0h0m2s500ms'.
 void write_bits(std::byte* to, std::uint64_t value);
@@ -343,30 +332,27 @@ struct Frames {
           top(calls),
           pile(recurring) {}
 
-    /// Where an address leads: it is the number of an instance of the program plus 1, or 0 for the
-    /// block itself, times 2^32, plus a slot.
-    std::byte* place(std::uint64_t address) const {
-        const std::uint64_t space = address >> 32;
-        std::byte* first = space == 0 ? root : context.instances[space - 1];
-        return first + 8 * (address & 0xFFFF'FFFF);
-    }
+    std::byte* place(std::uint64_t address) const { return place_of(address, root, context); }
 
     std::uint64_t address_of(std::uint32_t slot) const { return base + slot; }
 
     /// The address of something, as it means the same to any block that uses it in any scan: with
     /// the number of the instance, where that is one of the program's.
     std::uint64_t lasting(std::uint64_t address) const {
-        if (address >> 32 != 0) return address;
+        const Address at = Address::of(address);
+        if (at.is_of_program()) return address;
         for (int i = 0; i < context.blocks; ++i)
             if (context.instances[i] == root)
-                return (static_cast<std::uint64_t>(i) + 1) << 32 | address;
+                return Address::in(static_cast<std::uint64_t>(i), at.slot).word();
         return address;
     }
 
     std::uint64_t global_number(std::uint32_t number) const {
         return word(root, globals_slot + number);
     }
-    std::uint64_t global(std::uint32_t number) const { return (global_number(number) + 1) << 32; }
+    std::uint64_t global(std::uint32_t number) const {
+        return Address::in(global_number(number)).word();
+    }
 
     /// What that method is of the instance at the address, which is one, to slot 0, and the
     /// address of what is given to it, to the next one. False: there is no room to call it.

@@ -94,8 +94,8 @@ void write_rounded(std::byte* to, T value) {
     set_word(to, 0, static_cast<std::uint64_t>(out - first));
 }
 
-/// Of a number that is not 0, without its sign: seven digits of a REAL, of what a REAL holds of
-/// them, so that 1/3 has 3333334; fifteen of an LREAL.
+/// A number that is not 0, without its sign: a REAL has seven digits, of what a REAL holds of them,
+/// so that 1/3 has 3333334, an LREAL fifteen.
 struct Digits {
     explicit Digits(float value) {
         constexpr double most = 1e7;
@@ -204,7 +204,7 @@ std::string_view without_groups(std::string_view text, std::array<char, longest_
     return {room.data(), static_cast<std::size_t>(end - room.data())};
 }
 
-/// Of a number that no double holds: infinity, or 0 where it is too near to that.
+/// A number that no double holds is infinity, or 0 where it is too near to that.
 double beyond_range(std::string_view number) {
     const std::size_t letter = std::min(number.find_first_of("eE"), number.size());
     const auto whole = static_cast<double>(std::min(number.find('.'), letter)),

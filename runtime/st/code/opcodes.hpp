@@ -40,7 +40,7 @@
     OP(set_address, move, "ws--", put(a, frames.address_of(b)))                                      \
     OP(set_global, move, "wn--", put(a, frames.global(b)))                                           \
     OP(set_global_number, move, "wn--", put(a, frames.global_number(b)))                             \
-    OP(address_of_number, move, "wr--", put(a, (U(b) + 1) << 32))                                    \
+    OP(address_of_number, move, "wr--", put(a, Address::in(U(b)).word()))                                     \
     OP(lasting, move, "wr--", put(a, frames.lasting(U(b))))                                          \
     OP(number_call, move, "w---", put(a, frames.number_of_call(fuel)))                                \
     OP(bytes_of_slots, integer, "wrn-", put(a, byte_of(code, c, U(b))))                              \
@@ -181,15 +181,15 @@
     OP(real_bits, real, "wr--", put(a, std::uint64_t{std::bit_cast<std::uint32_t>(static_cast<float>(R(b)))})) \
     OP(real_of_bits, real, "wr--", put(a, double{std::bit_cast<float>(static_cast<std::uint32_t>(U(b)))})) \
     OP(is_finite, real, "wr--", put(a, std::uint64_t{std::isfinite(R(b))}))                          \
-    OP(text_copy, text, "rrr-", if (!copy_text(target(U(a)), target(U(b)), U(c))) frames.note_cut(BEHIND)) \
-    OP(text_append, text, "rrdn", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1), d)) frames.note_cut(BEHIND)) \
-    OP(text_recode, text, "rrn-", recode_text(target(U(a)), target(U(b)), c))                        \
+    OP(text_copy, text, "rrr-", if (!copy_text(target(U(a)), target(U(b)), TextRoom::of_number(U(c)))) frames.note_cut(BEHIND)) \
+    OP(text_append, text, "rrdn", if (!append_text(target(U(a)), target(U(b)), I(c), I(c + 1), TextRoom::of_number(d))) frames.note_cut(BEHIND)) \
+    OP(text_recode, text, "rrn-", recode_text(target(U(a)), target(U(b)), TextRoom::of_number(c)))   \
     OP(text_length, text, "wrn-", put(a, length_of_text(target(U(b)), c != 0)))                      \
     OP(text_compare, text, "wrr-", put(a, compare_texts(target(U(b)), target(U(c)))))                \
-    OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), d)) put(a, *n); else FAIL(array_bounds)) \
-    OP(text_byte, text, "wrrr", if (const auto n = byte_of_text(target(U(b)), I(c), U(d))) put(a, *n); else FAIL(array_bounds)) \
-    OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
-    OP(set_character, text, "rrrr", if (!set_character(target(U(b)), I(c), U(a), U(d))) FAIL(array_bounds)) \
+    OP(text_character, text, "wrrn", if (const auto n = character_of(target(U(b)), I(c), TextRoom::of_number(d))) put(a, *n); else FAIL(array_bounds)) \
+    OP(text_byte, text, "wrrr", if (const auto n = byte_of_text(target(U(b)), I(c), TextRoom::of_number(U(d)))) put(a, *n); else FAIL(array_bounds)) \
+    OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), TextRoom::of_number(U(d)))) FAIL(array_bounds)) \
+    OP(set_character, text, "rrrr", if (!set_character(target(U(b)), I(c), U(a), TextRoom::of_number(U(d)))) FAIL(array_bounds)) \
     OP(text_find, text, "wrrn", put(a, find_text(target(U(b)), target(U(c)), d != 0)))               \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \

@@ -42,8 +42,7 @@ struct ShapeMember {
 inline constexpr std::uint32_t reference_slots = 3;
 
 /// A variable that something refers to. A reference is three slots: the lasting address of the
-/// variable, 0 of NULL; the number of its Piece plus 1, times 2^32, plus how many bytes it is from
-/// the variable's first one (as std::int32_t); and the number of the call that has it, or 0.
+/// variable, 0 of NULL; its ByteOfPiece; and the number of the call that has it, or 0.
 struct Piece {
     std::string name;  ///< for messages: `Motor.table`
     std::uint32_t shape = 0;
@@ -51,6 +50,18 @@ struct Piece {
     std::uint32_t routine = 0;     ///< by number
     std::uint32_t slot = 0;        ///< in the frame
     std::uint32_t activation = 0;  ///< slot in the frame with the number of the call
+};
+
+struct ByteOfPiece {
+    std::uint32_t piece = 0;  ///< the number of the Piece plus 1; 0: there is none
+    std::int32_t byte = 0;    ///< from the variable's first one
+
+    constexpr std::uint64_t word() const {
+        return std::uint64_t{piece} << 32 | static_cast<std::uint32_t>(byte);
+    }
+    static constexpr ByteOfPiece of(std::uint64_t word) {
+        return {static_cast<std::uint32_t>(word >> 32), static_cast<std::int32_t>(word)};
+    }
 };
 
 struct Code;

@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "runtime/model/scan.hpp"
 #include "runtime/st/code/op_class.hpp"
 
 namespace lineshaft::st {
@@ -37,6 +38,28 @@ enum HeaderSlot : std::uint32_t {
     counts_slot,    ///< executed instructions of each class, if they are counted
     globals_slot = counts_slot + op_classes,
 };
+
+/// Where something stands: a slot of an instance of the program, or of the one that is scanned.
+struct Address {
+    std::uint64_t space = 0;  ///< the number of the instance plus 1; 0: of the one that is scanned
+    std::uint64_t slot = 0;
+
+    constexpr bool is_of_program() const { return space != 0; }
+    constexpr std::int64_t instance() const { return static_cast<std::int64_t>(space) - 1; }
+    constexpr std::uint64_t word() const { return space << 32 | slot; }
+
+    static constexpr Address of(std::uint64_t word) { return {word >> 32, word & 0xFFFF'FFFF}; }
+    static constexpr Address in(std::uint64_t instance, std::uint64_t slot = 0) {
+        return {instance + 1, slot};
+    }
+};
+
+/// Where an address leads, in a scan of the instance at `root`.
+template <class Byte>
+Byte* place_of(std::uint64_t address, Byte* root, const Context& context) {
+    const Address at = Address::of(address);
+    return (at.is_of_program() ? context.instances[at.instance()] : root) + 8 * at.slot;
+}
 
 /// Where a scan ended with a fault.
 struct EndOfScan {

@@ -10,16 +10,15 @@ std::string_view text_at(const std::byte* place) {
     return {reinterpret_cast<const char*>(place + 8), static_cast<std::size_t>(word(place, 0))};
 }
 
-bool copy_text(std::byte* to, const std::byte* from, std::uint64_t room) {
+bool copy_text(std::byte* to, const std::byte* from, TextRoom room) {
     const std::uint64_t whole = word(from, 0), length = kept_bytes(text_at(from), room);
     std::memmove(to + 8, from + 8, length);
     set_word(to, 0, length);
     return length == whole;
 }
 
-void recode_text(std::byte* to, const std::byte* from, std::uint32_t room) {
-    const std::string text =
-        (room & of_units) != 0 ? widened(text_at(from)) : narrowed(text_at(from));
+void recode_text(std::byte* to, const std::byte* from, TextRoom room) {
+    const std::string text = room.counts_units() ? widened(text_at(from)) : narrowed(text_at(from));
     const std::size_t kept = kept_bytes(text, room);
     std::memcpy(to + 8, text.data(), kept);
     set_word(to, 0, kept);
@@ -27,7 +26,7 @@ void recode_text(std::byte* to, const std::byte* from, std::uint32_t room) {
 
 /// As `append_text`: first and count are of units.
 static bool append_units(std::byte* to, const std::byte* from, std::int64_t first,
-                         std::int64_t count, std::uint32_t room) {
+                         std::int64_t count, TextRoom room) {
     const std::u16string units = units_of(text_at(from));
     const auto length = static_cast<std::int64_t>(units.size());
     first = std::clamp<std::int64_t>(first, 0, length);
@@ -42,7 +41,7 @@ static bool append_units(std::byte* to, const std::byte* from, std::int64_t firs
     return kept == text.size();
 }
 
-bool is_too_long(const std::byte* text, std::uint64_t room) {
+bool is_too_long(const std::byte* text, TextRoom room) {
     return kept_bytes(text_at(text), room) < word(text, 0);
 }
 
@@ -51,13 +50,13 @@ std::uint64_t length_of_text(const std::byte* text, bool in_units) {
 }
 
 bool append_text(std::byte* to, const std::byte* from, std::int64_t first, std::int64_t count,
-                 std::uint32_t room) {
-    if ((room & of_units) != 0) return append_units(to, from, first, count, room);
+                 TextRoom room) {
+    if (room.counts_units()) return append_units(to, from, first, count, room);
     const auto length = static_cast<std::int64_t>(word(from, 0));
     first = std::clamp<std::int64_t>(first, 0, length);
     count = std::clamp<std::int64_t>(count, 0, length - first);
     const auto before = static_cast<std::int64_t>(word(to, 0));
-    const auto taken = std::clamp<std::int64_t>(room - before, 0, count);
+    const auto taken = std::clamp<std::int64_t>(room.most() - before, 0, count);
     std::memmove(to + 8 + before, from + 8 + first, static_cast<std::size_t>(taken));
     set_word(to, 0, static_cast<std::uint64_t>(before + taken));
     return taken == count;
@@ -69,42 +68,39 @@ std::int64_t compare_texts(const std::byte* a, const std::byte* b) {
 }
 
 std::optional<std::uint64_t> character_of(const std::byte* from, std::int64_t place,
-                                          std::uint32_t room) {
-    const bool is_there = place >= 1 && place <= std::int64_t{room & ~(of_units | of_s7)};
-    if (!is_there) return (room & of_s7) != 0 ? std::optional<std::uint64_t>(0) : std::nullopt;
-    if ((room & of_units) != 0) return byte_of_text(from, place - 1, room & ~of_s7);
+                                          TextRoom room) {
+    const bool is_there = place >= 1 && place <= std::int64_t{room.most()};
+    if (!is_there) return room.may_miss() ? std::optional<std::uint64_t>(0) : std::nullopt;
+    if (room.counts_units()) return byte_of_text(from, place - 1, room);
     const auto at = static_cast<std::uint64_t>(place - 1);
     return at < word(from, 0) ? byte(from + 8, at) : 0;
 }
 
-static bool set_unit(std::byte* text, std::uint64_t at, std::uint64_t value, std::uint64_t room) {
-    if (at > room || (at == room && value != 0)) return false;
-    std::u16string memory = memory_of_units(text, room);
+static bool set_unit(std::byte* text, std::uint64_t at, std::uint64_t value, std::uint64_t most) {
+    if (at > most || (at == most && value != 0)) return false;
+    std::u16string memory = memory_of_units(text, most);
     memory[at] = static_cast<char16_t>(value);
     set_memory_of_units(text, memory);
     return true;
 }
 
-static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t value,
-                          std::uint64_t room) {
-    const bool is_wide = (room & of_units) != 0;
+static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t value, TextRoom room) {
     const std::uint64_t at = static_cast<std::uint64_t>(place) - 1,
-                        length = length_of_text(text, is_wide), most = room & (grows - 1);
-    if (at > length || at >= most) return true;
-    if (is_wide) return set_unit(text, at, value, most);
+                        length = length_of_text(text, room.counts_units());
+    if (at > length || at >= room.most()) return true;
+    if (room.counts_units()) return set_unit(text, at, value, room.most());
     set_byte(text + 8, at, value);
     if (at == length) set_word(text, 0, length + 1);
     return true;
 }
 
-bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std::uint64_t room) {
-    if ((room & of_s7) != 0) return set_or_append(text, place, value, room);
+bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, TextRoom room) {
+    if (room.may_miss()) return set_or_append(text, place, value, room);
     const auto at = static_cast<std::uint64_t>(place) - 1;
-    const std::uint64_t most = room & (grows - 1);
-    const bool is_wide = (room & of_units) != 0;
-    if ((room & grows) != 0 && at == length_of_text(text, is_wide) && at < most)
+    if (room.grows() && at == length_of_text(text, room.counts_units()) && at < room.most())
         return set_or_append(text, place, value, room);
-    if (is_wide) return at < count_units(text_at(text)) && set_unit(text, at, value, most);
+    if (room.counts_units())
+        return at < count_units(text_at(text)) && set_unit(text, at, value, room.most());
     const bool is_there = at < word(text, 0);
     if (is_there) set_byte(text + 8, at, value);
     if (is_there && value == 0) set_word(text, 0, at);
@@ -112,27 +108,26 @@ bool set_character(std::byte* text, std::int64_t place, std::uint64_t value, std
 }
 
 std::optional<std::uint64_t> byte_of_text(const std::byte* from, std::int64_t place,
-                                          std::uint64_t room) {
+                                          TextRoom room) {
     const auto at = static_cast<std::uint64_t>(place);
-    if (at > (room & ~std::uint64_t{of_units})) return {};
-    if ((room & of_units) != 0) {
+    if (at > room.most()) return {};
+    if (room.counts_units()) {
         const std::u16string units = units_of(text_at(from));
         return at < units.size() ? units[at] : 0;
     }
     return at < word(from, 0) ? byte(from + 8, at) : 0;
 }
 
-bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value,
-                      std::uint64_t room) {
+bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, TextRoom room) {
     const auto at = static_cast<std::uint64_t>(place);
-    if ((room & of_units) != 0) return set_unit(text, at, value, room & ~std::uint64_t{of_units});
-    if (at > room || (at == room && value != 0)) return false;
+    if (room.counts_units()) return set_unit(text, at, value, room.most());
+    if (at > room.most() || (at == room.most() && value != 0)) return false;
     std::uint64_t length = word(text, 0);
     const bool is_behind = at >= length;
-    if (is_behind && length < room) set_byte(text + 8, length, 0);
-    if (at < room) set_byte(text + 8, at, value);
+    if (is_behind && length < room.most()) set_byte(text + 8, length, 0);
+    if (at < room.most()) set_byte(text + 8, at, value);
     if (!is_behind && value == 0) length = at;
-    while (is_behind && length < room && byte(text + 8, length) != 0) ++length;
+    while (is_behind && length < room.most() && byte(text + 8, length) != 0) ++length;
     set_word(text, 0, length);
     return true;
 }

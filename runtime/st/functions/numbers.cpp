@@ -89,9 +89,8 @@ Slot emit_select(Emission& e) {
 Slot emit_multiplex(Emission& e) {
     const Slot k = e.value(0), first = e.several(1);
     const std::uint64_t count = e.count() - 1;
-    const bool has_else = same_name(e.call.arguments.back().name.text, "inelse");
     const Slot place =
-        has_else ? e.emit(Op::min_unsigned, k, e.constant(count - 1)) : e.index(k, count);
+        e.call.has_else ? e.emit(Op::min_unsigned, k, e.constant(count - 1)) : e.index(k, count);
     return e.result(Op::load_at, first, place);
 }
 

@@ -9,7 +9,7 @@ namespace lineshaft::st {
 
 namespace {
 
-/// Of what counts the calls of an instance: this bit says that it is mocked, those below how often
+/// What counts the calls of an instance has this bit where it is mocked; those below say how often
 /// it was called.
 constexpr std::uint64_t mocked_bit = std::uint64_t{1} << 63;
 
@@ -49,24 +49,17 @@ Location calls_of(Writing& w, const Expression& instance) {
     return behind(at, type.kind == Kind::block ? std::uint32_t{error_slot} : type.slots - 1);
 }
 
-/// What the statement asserts of two values.
-Word relation_of(TestCall test) {
-    static_assert(TestCall::assert_le == static_cast<TestCall>(7));
-    constexpr Word relations[] = {Word::equal, Word::unequal,          Word::greater,
-                                  Word::less,  Word::greater_or_equal, Word::less_or_equal};
-    return relations[static_cast<int>(test) - static_cast<int>(TestCall::assert_eq)];
-}
-
 Compared compared(Writing& w, const Expression& e) {
     const Expression &first = *e.arguments[0].value, &second = *e.arguments[1].value;
+    const Word relation = info(e.test).relation;
     if (first.type->kind == Kind::text) {
         const Slot a = text_address(w, first), b = text_address(w, second);
-        return {compare_texts(w, relation_of(e.test), a, b), a, b};
+        return {compare_texts(w, relation, a, b), a, b};
     }
     const Slot a = value(w, first), b = value(w, second);
     const bool is_unsigned = first.type->is_unsigned_64() || second.type->is_unsigned_64();
     const Type& type = first.type->is_real() ? *first.type : is_unsigned ? ulint_type : lint_type;
-    return {compare(w, relation_of(e.test), type, a, b), a, b};
+    return {compare(w, relation, type, a, b), a, b};
 }
 
 /// The stop keeps the values' slots, and what follows it that of the message.

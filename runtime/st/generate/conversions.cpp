@@ -15,7 +15,7 @@ Slot look_up(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers,
     return w.emit(Op::look_up, none, slot, w.table({least, numbers.size(), 1, first}));
 }
 
-/// Of a number that is none of them a number that is no place.
+/// A number that is none of them gives a number that is no place.
 Slot look_up_place(Writing& w, Slot slot, const std::vector<std::int64_t>& numbers) {
     const auto [least, most] = std::ranges::minmax(numbers);
     std::vector<std::int64_t> places(static_cast<std::size_t>(most - least) + 1, -1);
@@ -60,7 +60,7 @@ Slot convert_real(Writing& w, Slot slot, const Type& from, const Type& to, bool 
     return nearest(w, slot, to, truncates, wanted);
 }
 
-/// Of a DT and a DATE its DATE and its TOD; all others keep their ns.
+/// A DT and a DATE give their DATE and their TOD; all others keep their ns.
 Slot convert_date(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const bool has_day = from.kind == Kind::moment || from.kind == Kind::date;
     if (!has_day || (to.kind != Kind::date && to.kind != Kind::clock)) return slot;
@@ -159,7 +159,7 @@ bool is_whole_number(const Type& type) {
     return (type.is_integer() || type.is_bits()) && !type.is_character;
 }
 
-/// Of a DATE and a whole number of any width in SCL.
+/// A DATE and a whole number of any width do in SCL.
 bool counts_days(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
@@ -167,7 +167,7 @@ bool counts_days(const Expression& e) {
            is_whole_number(number);
 }
 
-/// Of a TIME, a TOD, a DT or a DATE and 64 bits, of CODESYS also 16, which are no days there; the
+/// A TIME, a TOD, a DT or a DATE and 64 bits are, in CODESYS also 16, which are no days there; the
 /// prelude reckons in ns.
 bool is_counted(const Expression& e) {
     const Dialect& dialect = e.place.dialect();
@@ -245,7 +245,7 @@ Slot attempted(Writing& w, const Expression& e, Slot wanted) {
     return w.emit(Op::attempt, wanted, from, method_number(w, *block.routine));
 }
 
-/// Of what has not been kept in a type of its own.
+/// The value has not been kept in a type of its own.
 Slot convert_wide(Writing& w, Slot slot, const Type& to, Slot wanted) {
     if (to.is_real()) return convert(w, slot, lint_type, to, false, wanted);
     return to.bits == 64 ? slot : w.emit(of_type(Op::wrap_sint, to.plain()), wanted, slot);
@@ -289,7 +289,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         if (e.type->is_character) {
             const Slot to = w.result(wanted);
             w.put(Op::text_character, to, text, w.constant_slot(1),
-                  e.type->bits == 16 ? of_units | 1 : 1);
+                  TextRoom(1, e.type->bits == 16).number());
             return to;
         }
         return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,

@@ -36,7 +36,7 @@ void fill_elements(Writing& w, Writing::Image& image, std::uint32_t at, const Ty
     }
 }
 
-/// Of a block that begins at `at`.
+/// The block begins at `at`.
 void put(Writing::Image& image, std::uint32_t at, const Variable& member, const Constant& value) {
     if (member.is_byte)
         reinterpret_cast<char*>(&image[at])[member.byte] = static_cast<char>(value.integer);

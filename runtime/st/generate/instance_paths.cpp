@@ -87,7 +87,7 @@ void fill_paths(Writing& w) {
                 w, paths, w.images[routine.type], 0, *routine.type,
                 fmt::format("{}.{}", path_of_application(routine.pou->name), routine.name));
     for (const Global& global : w.checked.globals) {
-        if (global.type->kind != Kind::structure || global.name == "statics") continue;
+        if (global.type->kind != Kind::structure || global.is_statics) continue;
         for (const Variable* member : global.type->members)
             if (member->type)
                 fill_paths_of(

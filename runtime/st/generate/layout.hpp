@@ -17,8 +17,8 @@ void forget_places(Writing& w);
 /// A block is in it, of which a body or a method is not written yet: so its size is not known.
 bool is_growing(const Writing& w, const Type& type);
 
-/// Of a list of globals the variables with blocks in them, which are as large as these are once
-/// all is written, or those without.
+/// Gives places to the variables of a list of globals that have blocks in them, which are as large
+/// as these are once all is written, or to those without.
 void lay_out_members(Writing& w, const Type& list, bool with_blocks);
 
 /// Puts in what is known when all is laid out.

@@ -100,7 +100,7 @@ Slot reference_to_packed(Writing& w, const Location& at) {
 Location unpacked(Writing& w, const Location& at, const Type& type) {
     const std::uint32_t slots = slots_of(w, type);
     const Location made{Mode::slot, w.new_temporary(slots)};
-    // Of the last slot of a UNION's bytes nothing is left as it was.
+    // Nothing in the last slot of a UNION's bytes is left as it was.
     if (type.kind == Kind::union_) w.put(Op::move, made.slot + slots - 1, w.constant_slot(0));
     copy_packed(w, made, at, type);
     return made;

@@ -30,7 +30,7 @@ void copy_value(Writing& w, const Location& to, const Type& type, const Expressi
     copy_value(w, to, locate(w, from), type);
 }
 
-/// Of elements whose size is not known yet it is no other's.
+/// Where the size of elements is not known yet it is no other's.
 std::uint32_t table_of(Writing& w, const IndexTable& made, bool is_late, const Type* array) {
     if (!is_late) return w.table(made);
     const auto number = static_cast<std::uint32_t>(w.code.tables.size());
@@ -164,7 +164,7 @@ Slot address_of(Writing& w, Location location) {
 }
 
 Slot capacity_of(Writing& w, const Location& text, const Type& type) {
-    return type.is_open ? text.capacity : w.constant_slot(type.room());
+    return type.is_open ? text.capacity : w.constant_slot(type.room().number());
 }
 
 Slot load(Writing& w, const Location& from, Slot wanted) {

@@ -32,7 +32,7 @@ using Mode = Location::Mode;
 Location locate(Writing& w, const Expression& e);
 Location locate_global(Writing& w, const Variable& variable);
 Location part(Writing& w, Location of, const Variable& member);
-/// Of the array at `of`, the one that `e` indexes.
+/// The element of the array at `of` that `e` indexes.
 Location element(Writing& w, Location of, const Expression& e);
 Location behind(Location of, std::uint32_t slots);  ///< so many slots on
 /// So far on as will be known when all is laid out.

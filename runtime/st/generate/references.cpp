@@ -73,21 +73,20 @@ Slot refer_to_part(Writing& w, Slot base, const Expression& part, const Expressi
     return made;
 }
 
-/// The number of the piece that something is, which `make` makes the first time; as a reference has
-/// it, before its bytes.
-std::uint64_t piece_of(Writing& w, Writing::Pieces& known, const void* of, const auto& make) {
+/// The piece that something is, which `make` makes the first time, from its first byte on.
+ByteOfPiece piece_of(Writing& w, Writing::Pieces& known, const void* of, const auto& make) {
     const auto [it, added] = known.emplace(of, static_cast<std::uint32_t>(w.code.pieces.size()));
     if (added) w.code.pieces.push_back(make());
-    return (std::uint64_t{it->second} + 1) << 32;
+    return {it->second + 1};
 }
 
 /// The instance itself, of a block's body and its methods.
-std::uint64_t piece_of(Writing& w, const Type& own) {
+ByteOfPiece piece_of(Writing& w, const Type& own) {
     return piece_of(w, w.pieces, &own,
                     [&] { return Piece{.name = "THIS", .shape = shape_number(w, own)}; });
 }
 
-std::uint64_t piece_of(Writing& w, const Variable& variable) {
+ByteOfPiece piece_of(Writing& w, const Variable& variable) {
     const Routine* routine = w.routine;
     if (routine->owner && variable.of != routine->pou) routine = routine->owner;
     return piece_of(w, w.pieces, &variable, [&] {
@@ -114,11 +113,12 @@ Slot refer_to_image(Writing& w, const Variable& variable) {
     const Image& image = w.checked.image;
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, w.emit(Op::set_global, none, static_cast<Slot>(image.global)));
-    const std::uint64_t piece = piece_of(w, w.pieces, &image, [&] {
+    ByteOfPiece to = piece_of(w, w.pieces, &image, [&] {
         return Piece{.name = std::string(image_name),
                      .shape = shape_number(w, *w.checked.bytes_of_image)};
     });
-    w.put(Op::move, made + 1, w.constant_slot(piece + image.bit_of(variable.address) / 8));
+    to.byte = static_cast<std::int32_t>(image.bit_of(variable.address) / 8);
+    w.put(Op::move, made + 1, w.constant_slot(to.word()));
     w.put(Op::move, made + 2, w.constant_slot(0));
     return made;
 }
@@ -129,8 +129,8 @@ Slot refer_to_variable(Writing& w, const Expression& root) {
     const Slot address = address_of(w, locate(w, root));
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, address);
-    const std::uint64_t piece = variable ? piece_of(w, *variable) : piece_of(w, *root.type);
-    w.put(Op::move, made + 1, w.constant_slot(piece));
+    const ByteOfPiece to = variable ? piece_of(w, *variable) : piece_of(w, *root.type);
+    w.put(Op::move, made + 1, w.constant_slot(to.word()));
     const bool ends = variable && variable->ends_with_call();
     w.put(Op::move, made + 2, ends ? w.routine->activation : w.constant_slot(0));
     return made;
@@ -233,19 +233,19 @@ void finish_shape(Writing& w, std::uint32_t number) {
     w.code.shapes[number] = made;
 }
 
-/// Of `?=`: to the instance itself, or NULL.
+/// `?=` makes one to the instance itself, or NULL.
 Slot attempted_reference(Writing& w, const Expression& e) {
     const Slot made = w.new_temporary(reference_slots);
     const Slot at = attempted(w, e, made);
     if (at != made) w.put(Op::move, made, at);
-    const std::uint64_t piece = piece_of(w, *e.type->element);
+    const ByteOfPiece to = piece_of(w, *e.type->element);
     const Slot is_there = w.emit(Op::ne_word, none, made, w.constant_slot(0));
-    w.put(Op::mul_lint, made + 1, is_there, w.constant_slot(piece));
+    w.put(Op::mul_lint, made + 1, is_there, w.constant_slot(to.word()));
     w.put(Op::move, made + 2, w.constant_slot(0));
     return made;
 }
 
-/// Of an overlay, where a variable is seen as another type.
+/// An overlay sees a variable as another type.
 bool is_view(const Expression& refer) {
     const Expression& place = *refer.operands[0];
     return &root_of(place) == &place && place.kind != E::deref && !is_in_image(place.variable);
@@ -257,11 +257,11 @@ Slot view_of(Writing& w, const Expression& place, bool is_s7) {
     const Slot address = address_of(w, locate(w, place));
     w.put(Op::move, made, address);
     const Variable& variable = *place.variable;
-    const std::uint64_t piece = piece_of(w, w.views, &variable, [&] {
+    const ByteOfPiece to = piece_of(w, w.views, &variable, [&] {
         return Piece{.name = std::string(variable.text),
                      .shape = shape_number(w, *variable.type, is_s7)};
     });
-    w.put(Op::move, made + 1, w.constant_slot(piece));
+    w.put(Op::move, made + 1, w.constant_slot(to.word()));
     return made;
 }
 

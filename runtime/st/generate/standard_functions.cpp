@@ -67,7 +67,8 @@ struct Call : Emission {
     Slot several(std::size_t first) override { return st::several(w, call, first); }
     Slot capacity(std::size_t i) override {
         const Slot room = capacity_of(w, locate(w, given(i)), *given(i).type);
-        return w.emit(Op::and_bits, wanted, room, w.constant_slot(of_units - 1));
+        const std::uint32_t most = ~TextRoom(0, true).number();
+        return w.emit(Op::and_bits, wanted, room, w.constant_slot(most));
     }
     Slot reference(std::size_t i) override { return st::reference(w, given(i)); }
     Slot moved(Slot reference, Slot bytes) override {
@@ -94,7 +95,7 @@ struct Call : Emission {
         const bool is_codesys = call.place.dialect().vendor == Vendor::codesys;
         const auto most =
             static_cast<std::uint32_t>(is_codesys ? longest_result_of_codesys : longest_result);
-        w.put(Op::text_append, to, from, range, is_wide() ? most | of_units : most);
+        w.put(Op::text_append, to, from, range, TextRoom(most, is_wide()).number());
     }
     void reset_timer(std::size_t i) override { st::reset_timer(w, given(i)); }
 
@@ -119,9 +120,8 @@ bool chooses(const Expression& e) {
 Slot choose(Writing& w, Call& call) {
     const std::size_t count = call.count() - 1;
     const bool by_truth = call.given(0).type->kind == Kind::boolean;
-    const bool has_else = same_name(call.call.arguments.back().name.text, "inelse");
     const Slot to = w.new_temporary(), given = value_before(w, call.given(0), call.call);
-    const Slot number = by_truth || has_else ? given : call.index(given, count);
+    const Slot number = by_truth || call.call.has_else ? given : call.index(given, count);
     Jumps ends;
     for (std::size_t i = 1; i <= count; ++i) {
         Jumps next;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 
@@ -19,10 +18,12 @@ void write_character(Writing& w, const Statement& s) {
     const Slot index = value(w, *s.target->arguments[0].value);
     const Dialect& dialect = s.target->place.dialect();
     Slot room = capacity_of(w, at, *text.type);
-    const std::uint32_t rule = dialect.characters_may_be_missing ? meaning::of_s7
-                               : dialect.vendor == Vendor::none  ? meaning::grows
-                                                                 : 0;
-    if (rule != 0) room = w.emit(Op::or_bits, none, room, w.constant_slot(rule));
+    const bool may_miss = dialect.characters_may_be_missing,
+               grows = !may_miss && dialect.vendor == Vendor::none;
+    if (may_miss || grows) {
+        const TextRoom any(0, false), rule = grows ? any.that_grows() : any.that_may_miss();
+        room = w.emit(Op::or_bits, none, room, w.constant_slot(rule.number()));
+    }
     w.put(dialect.texts_are_bytes ? Op::set_text_byte : Op::set_character, from, place, index,
           room);
     if (at.packed) store_packed_text(w, at, place);

@@ -90,7 +90,7 @@ Slot recoded_text(Writing& w, const Expression& e) {
     const std::uint32_t bytes = e.type->is_wide ? 3 * length : length;
     const Slot given = text_address(w, *e.operands[0]),
                made = w.emit(Op::set_address, none, w.new_temporary(1 + (bytes + 7) / 8));
-    w.put(Op::text_recode, made, given, e.type->is_wide ? length | of_units : length);
+    w.put(Op::text_recode, made, given, TextRoom(length, e.type->is_wide).number());
     return made;
 }
 
@@ -105,7 +105,8 @@ Slot text_conversion(Writing& w, const Expression& e) {
     const bool is_unit = from.type->is_character && from.type->bits == 16;
     const auto [text, made] = new_text(w, is_unit);
     if (is_unit) {
-        w.put(Op::set_text_byte, number, made, w.constant_slot(0), w.constant_slot(of_units | 1));
+        w.put(Op::set_text_byte, number, made, w.constant_slot(0),
+              w.constant_slot(TextRoom(1, true).number()));
         return made;
     }
     if (from.type->is_character) {
@@ -119,11 +120,9 @@ Slot text_conversion(Writing& w, const Expression& e) {
             return made;
         }
     if (from.type->is_time()) {
-        w.put(Op::text_of_time, made, number,
-              static_cast<Slot>(from.type->kind) |
-                  static_cast<Slot>(form_of_time(*from.type, e.place.dialect().vendor)) *
-                      meaning::time_forms |
-                  (from.type->is_unsigned_64() ? meaning::of_unsigned : 0U));
+        const TimeText time{from.type->kind, form_of_time(*from.type, e.place.dialect().vendor),
+                            from.type->is_unsigned_64()};
+        w.put(Op::text_of_time, made, number, time.number());
         if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
             e.place.dialect().vendor == Vendor::codesys)
             write_no_time(w, number, made);
@@ -157,7 +156,7 @@ Slot text_before(Writing& w, const Expression& e, const Expression& later) {
     if (!is_variable || e.type->is_open || !has_call(later)) return from;
     const Slot text = w.new_temporary(slots_of(w, *e.type));
     const Slot made = w.emit(Op::set_address, none, text);
-    w.put(Op::text_copy, made, from, w.constant_slot(e.type->room()));
+    w.put(Op::text_copy, made, from, w.constant_slot(e.type->room().number()));
     return made;
 }
 

@@ -1,6 +1,5 @@
 #include "runtime/st/generate/values.hpp"
 
-#include "runtime/st/code/meaning.hpp"
 #include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {
@@ -235,10 +234,13 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
     const Dialect& dialect = e.place.dialect();
     if (dialect.texts_are_bytes)
         w.put(Op::text_byte, to, address, index,
-              text.type->is_open ? locate(w, text).capacity : w.constant_slot(text.type->room()));
-    else
+              text.type->is_open ? locate(w, text).capacity
+                                 : w.constant_slot(text.type->room().number()));
+    else {
+        const TextRoom room = text.type->room();
         w.put(Op::text_character, to, address, index,
-              text.type->room() | (dialect.characters_may_be_missing ? meaning::of_s7 : 0));
+              (dialect.characters_may_be_missing ? room.that_may_miss() : room).number());
+    }
     return to;
 }
 

@@ -39,7 +39,7 @@ Slot within(Writing& w, const Type& type, Slot slot);
 
 // conversions.cpp
 
-/// Of `?=`: where the instance is, or 0 if it is not of the type.
+/// Where the instance is that `?=` takes, or 0 if it is not of the type.
 Slot attempted(Writing& w, const Expression& e, Slot wanted);
 
 /// An expression that is a conversion.
@@ -70,12 +70,12 @@ NewText new_text(Writing& w, bool is_wide = false);
 
 // standard_functions.cpp
 
-/// Of a text, an array or a structure, a slot with its address.
+/// A text, an array or a structure is a slot with its address.
 Slot standard(Writing& w, const Expression& e, Slot wanted);
 
 // calls.cpp
 
-/// Of a function, a method or a standard function.
+/// It may be of a function, a method or a standard function.
 Slot call(Writing& w, const Expression& e, Slot wanted);
 
 /// The frame that has the result and the outputs. A call whose arguments call functions themselves

@@ -14,9 +14,9 @@ using Kind = Type::Kind;
 using E = Expression::Kind;
 using S = Statement::Kind;
 
-/// Of a Slot: while a routine is being written its temporaries, constants and the frames of the
-/// functions that it calls are counted from 0 each; the end of the routine puts them behind its
-/// variables.
+/// What a Slot counts: while a routine is being written its temporaries, constants and the frames
+/// of the functions that it calls are counted from 0 each; the end of the routine puts them behind
+/// its variables.
 enum Region : std::uint32_t { temporary = 1U << 30, constant = 2U << 30, window = 3U << 30 };
 
 constexpr std::uint32_t region_mask = 3U << 30;
@@ -112,7 +112,7 @@ struct Writing {
     std::unordered_map<const Routine*, std::size_t> unwritten_parts =
         {};  ///< of blocks: bodies and methods
 
-    // Of the routine that is being written.
+    // These are of the routine that is being written.
     Routine* routine = nullptr;
     Image* image = nullptr;
     std::uint32_t temporaries = 0, most_temporaries = 0, windows = 0;

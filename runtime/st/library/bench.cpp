@@ -92,7 +92,8 @@ TestResult Bench::run_part(const CodeRoutine& routine, const Type& block, int gl
     const auto number =
         global < 0 ? static_cast<std::uint64_t>(std::ranges::find(places_, unit_) - places_.begin())
                    : static_cast<std::uint64_t>(global);
-    return run_on(routine, reinterpret_cast<std::byte*>(caller.data()), (number + 1) << 32 | slot);
+    return run_on(routine, reinterpret_cast<std::byte*>(caller.data()),
+                  Address::in(number, slot).word());
 }
 
 TestResult Bench::run_on(const CodeRoutine& routine, std::byte* instance, std::uint64_t frame) {

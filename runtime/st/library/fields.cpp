@@ -358,7 +358,7 @@ void add_data_blocks(Library::Made& made, const Options& options) {
         if (global.object || is_there || global.name == image_name) continue;
         KindContext& kind = add_kind(made, global.name, *global.type, options);
         if (global.pou) kind.retention = global.pou->retention;
-        kind.doc = global.pou ? "DATA_BLOCK" : global.name == "statics" ? "VAR_STAT" : "VAR_GLOBAL";
+        kind.doc = global.pou ? "DATA_BLOCK" : global.is_statics ? "VAR_STAT" : "VAR_GLOBAL";
         write_fields(made, kind, global);
     }
 }

@@ -168,15 +168,15 @@ bool is_at(const Type& type, std::size_t slot, const auto& fits, const auto& may
 /// known by its frame.
 bool is_reference(const std::byte* place, const KeptState& machine) {
     const auto& own = *static_cast<const KindContext*>(machine.context.kind);
-    const auto address = read<std::uint64_t>(place);
-    const std::uint64_t piece = read<std::uint64_t>(place + 8) >> 32, instance = address >> 32;
+    const Address address = Address::of(read<std::uint64_t>(place));
+    const std::uint32_t piece = ByteOfPiece::of(read<std::uint64_t>(place + 8)).piece;
     if (piece == 0) return true;
-    if (!own.code || piece > own.code->pieces.size() || instance == 0 ||
-        instance > static_cast<std::uint64_t>(machine.context.blocks))
+    if (!own.code || piece > own.code->pieces.size() || !address.is_of_program() ||
+        address.instance() >= machine.context.blocks)
         return false;
     const Piece& to = own.code->pieces[piece - 1];
     if (to.ends) return true;
-    const BlockType& type = *machine.context.types[instance - 1];
+    const BlockType& type = *machine.context.types[address.instance()];
     if (type.scan_blocks != scan_blocks) return false;
     const auto& kind = *static_cast<const KindContext*>(type.context);
     const Type& wanted = *own.code->shapes[to.shape].type;
@@ -185,7 +185,7 @@ bool is_reference(const std::byte* place, const KeptState& machine) {
                                 is_a(*there.routine, *wanted.routine);
         return is_derived || same_type(there, wanted);
     };
-    return kind.code == own.code && is_at(*kind.type, address & 0xFFFF'FFFF, fits, stays);
+    return kind.code == own.code && is_at(*kind.type, address.slot, fits, stays);
 }
 
 bool is_handle(const Type& type, std::int64_t number, const Context& context) {
@@ -194,11 +194,11 @@ bool is_handle(const Type& type, std::int64_t number, const Context& context) {
 }
 
 /// 0, or the address of an instance of the program that implements the interface.
-bool is_instance(const Type& interface, std::uint64_t address, const Context& context) {
-    if (address == 0) return true;
-    const std::uint64_t number = (address >> 32) - 1;
-    if (number >= static_cast<std::uint64_t>(context.blocks)) return false;
-    const BlockType& kind = *context.types[number];
+bool is_instance(const Type& interface, std::uint64_t word, const Context& context) {
+    if (word == 0) return true;
+    const Address address = Address::of(word);
+    if (!address.is_of_program() || address.instance() >= context.blocks) return false;
+    const BlockType& kind = *context.types[address.instance()];
     if (kind.scan_blocks != scan_blocks) return false;
     const Type& type = *static_cast<const KindContext*>(kind.context)->type;
     const auto implements = [&](const Type& there) {
@@ -207,7 +207,7 @@ bool is_instance(const Type& interface, std::uint64_t address, const Context& co
     const auto may_be = [](const Variable& part) {
         return part.space != Space::reference && part.space != Space::constant;
     };
-    return is_at(type, address & 0xFFFF'FFFF, implements, may_be);
+    return is_at(type, address.slot, implements, may_be);
 }
 
 bool is_value(const Type& type, const std::byte* place, const KeptState& machine) {

@@ -74,14 +74,10 @@ std::string without_values(std::string_view name) {
     return lower(name.substr(0, name.find('<')));
 }
 
-bool is_of_declarations(const std::string& path) {
-    return lower(path).ends_with(".fun");
-}
-
 /// One is B&R's `.fun`, and the other may have bodies of what it declares.
 bool are_halves(const std::string& a, const std::string& b) {
-    if (is_of_declarations(a) == is_of_declarations(b)) return false;
-    const std::string& declares = is_of_declarations(a) ? a : b;
+    if (has_no_bodies(a) == has_no_bodies(b)) return false;
+    const std::string& declares = has_no_bodies(a) ? a : b;
     return nearness(a, b) == declares.find_last_of('/') + 1;
 }
 
@@ -309,7 +305,7 @@ void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to
             if (!has_type(name)) std::ranges::for_each(nearest(name, user, to), add);
             add_halves(name);
         };
-        if (!is_of_declarations(user.file->path))
+        if (!has_no_bodies(user.file->path))
             for (const auto& [name, full] : user.types) add_halves(name);
         for (const Entry& entry : entries_)
             if (std::ranges::any_of(user.usings, is_in(entry.own_spaces))) add(&entry);

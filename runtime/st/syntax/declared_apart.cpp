@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
@@ -9,8 +8,8 @@ namespace lineshaft::st {
 namespace {
 
 bool is_declaration(const Pou& unit) {
-    return unit.place.source && lower(unit.place.source->file->path).ends_with(".fun") &&
-           unit.body.empty() && unit.methods.empty();
+    return unit.place.source && unit.place.source->has_no_bodies() && unit.body.empty() &&
+           unit.methods.empty();
 }
 
 /// `name;` or `name();`, wherever that stands.

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::st {
 
-static constexpr std::string_view plain_text = ".st";
+static constexpr std::string_view plain_text = standard_endings[0];
 
 const Dialect iec = {.sign_precedes_power = true,
                      .constants_have_values = true,
@@ -222,12 +223,15 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
 }
 
 bool is_plain_text(std::string_view path) {
-    static constexpr std::string_view endings[] = {
-        plain_text, ".iecst", ".iec", ".txt", ".text",
-        ".il",      ".pou",   ".plc", ".stl", ".structuredtext"};
     const std::string name = lower(path);
     const auto ends = [&](std::string_view ending) { return name.ends_with(ending); };
-    return std::ranges::any_of(endings, ends) && !ends(".scl.txt") && !ends(".exp.txt");
+    return (std::ranges::any_of(standard_endings, ends) ||
+            std::ranges::any_of(any_text_endings, ends)) &&
+           !ends(".scl.txt") && !ends(".exp.txt");
+}
+
+bool has_no_bodies(std::string_view path) {
+    return lower(path).ends_with(".fun");
 }
 
 std::span<const DialectName> dialect_names() {

@@ -119,6 +119,9 @@ const Dialect& dialect_of(std::string_view path, std::string_view text = {});
 /// It is read as a `.st` is.
 bool is_plain_text(std::string_view path);
 
+/// A `.fun` of B&R: what it declares has its bodies elsewhere, and pins of any name.
+bool has_no_bodies(std::string_view path);
+
 /// What users call a dialect, and the ending of a file's name that has it.
 struct DialectName {
     std::string_view name, ending;

@@ -68,8 +68,6 @@ void parse_test_statement(Parsing& p, Block& to);
 
 // parse_declarations.cpp
 void parse_sections(Parsing& p, Pou& pou, Word end);
-/// A `.fun` of B&R: what it declares has its bodies elsewhere, and pins of any name.
-bool has_no_bodies(const Parsing& p);
 DeclarationBlock parse_section(Parsing& p, Section section);
 bool accept_retention(Parsing& p, Retention& retention);
 void parse_variables(Parsing& p, std::vector<Declaration*>& to);

@@ -1,4 +1,3 @@
-#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
 #include "runtime/st/syntax/remarks.hpp"
 
@@ -104,10 +103,6 @@ bool accept_retention(Parsing& p, Retention& retention) {
     return true;
 }
 
-bool has_no_bodies(const Parsing& p) {
-    return lower(p.source->file->path).ends_with(".fun");
-}
-
 /// Var_Sections : ( Var_Section | Const_Section | Label_Section ) *
 void parse_sections(Parsing& p, Pou& pou, Word end) {
     while (!p.is(end) && !p.is(Word::end_of_file)) {
@@ -174,7 +169,7 @@ void parse_variables(Parsing& p, std::vector<Declaration*>& to) {
         return refuse_statement(p);
     const bool is_reserved =
         !p.is_name() && p.here().word < Word::end_of_file && behind == Word::colon;
-    if (is_reserved && !has_no_bodies(p)) return refuse_reserved_name(p);
+    if (is_reserved && !p.source->has_no_bodies()) return refuse_reserved_name(p);
     std::vector<Token> names;
     if (p.is(Word::at_) && p.next().word == Word::direct) {
         names.push_back(p.next());  // it is named by its address

@@ -11,7 +11,7 @@ namespace {
 
 /// What B&R declares of its language's own: AND, ADR, with inputs of ANY.
 bool is_of_language(const Parsing& p, const Pou& pou) {
-    if (pou.kind != PouKind::function || !has_no_bodies(p)) return false;
+    if (pou.kind != PouKind::function || !p.source->has_no_bodies()) return false;
     const auto is_any = [](const TypeText* type) {
         return type && type->kind == TypeText::Kind::name &&
                lower(type->name.text).starts_with("any");
@@ -211,7 +211,8 @@ Pou* parse_pou(Parsing& p) {
     pou.is_class = opener.word == Word::class_;
     pou.follows_init = opener.word == Word::method_ && has_attribute(p, first, "call_after_init");
     parse_pou_modifiers(p, pou);
-    const bool is_operator = has_no_bodies(p) && !p.is_name();  // B&R declares AND and its like
+    const bool is_operator =
+        p.source->has_no_bodies() && !p.is_name();  // B&R declares AND and its like
     pou.name = is_operator ? p.take()
                            : expect_name(p, fmt::format("the name of the {}", shown(opener.word)));
     pou.place = opener.place.to(pou.name.place);

@@ -222,7 +222,7 @@ void skip_line(Parsing& p) {
     while (!p.is(Word::end_of_file) && !p.here().first_in_line) p.take();
 }
 
-void skip_to_declaration(Parsing& p) {
+static void skip_to_declaration(Parsing& p) {
     p.panic = false;
     const auto begins_line = [&](Word word) { return p.is(word) && p.here().first_in_line; };
     while (!p.is(Word::end_of_file) && !p.at_pou() && !p.is(Word::var_global_) && !p.at_test() &&

@@ -46,7 +46,6 @@ bool at_label_of_case(const Parsing& p);
 std::string found(const Cursor& p);
 
 void skip_line(Parsing& p);
-void skip_to_declaration(Parsing& p);
 /// Behind the next ';', or before what ends a block or begins another declaration.
 void skip_declaration(Parsing& p);
 /// Behind the next ';', or before what begins or ends a block.

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/st/syntax/token.hpp"
-
 namespace lineshaft::st {
 
 TestCall find_test_statement(std::string_view name) {

@@ -33,6 +33,7 @@ struct Source {
     bool is_prelude() const { return kind == SourceKind::prelude; }
     bool is_library() const { return kind == SourceKind::library; }
     bool is_users() const { return !is_prelude() && !is_library(); }
+    bool has_no_bodies() const { return st::has_no_bodies(file->path); }
 };
 
 /// Part of a source: bytes [begin, end) of its text.

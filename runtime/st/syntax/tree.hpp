@@ -28,7 +28,7 @@ struct Expression;
 /// `a := 1`, `q => x`, or a value by position: of a call, an index, an initial value.
 struct Argument {
     Token name = {};         ///< `end_of_file` by position
-    bool is_output = false;  ///< `=>`
+    bool is_output = false;  ///< `=>`, or meant so, which the checker finds
     Expression* value = nullptr;
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
@@ -89,6 +89,7 @@ struct Expression {
     Routine* routine = nullptr;                  ///< that a name means, or a call calls
     bool is_dispatched = false;                  ///< a call: the instance says which routine
     const StandardFunction* standard = nullptr;  ///< that a call calls
+    bool has_else = false;  ///< a call of MUX: the last input is taken for a number of none
     const BlockType* called_as = nullptr;  ///< a call: of an IEC_TIMER, which is any of the timers
     Expression* initial = nullptr;         ///< what it is to all of `a, b : INT := 2 + 3`
 

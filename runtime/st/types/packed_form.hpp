@@ -47,7 +47,7 @@ struct PackedText {
     constexpr std::uint32_t number() const {
         return length | std::uint32_t{is_wide} << 30 | std::uint32_t{is_s7} << 31;
     }
-    constexpr std::uint32_t room() const { return is_wide ? length | of_units : length; }
+    constexpr TextRoom room() const { return {length, is_wide}; }
     static constexpr PackedText of_number(std::uint32_t number) {
         return {static_cast<std::uint16_t>(number), number >> 31 != 0, (number >> 30 & 1) != 0};
     }

@@ -119,8 +119,8 @@ struct Type {
         return (is_bits() || kind == Kind::integer || kind == Kind::time) && !is_signed &&
                bits == 64;
     }
-    /// Of a text: what an instruction has as its room, and the bytes that its slots have room for.
-    std::uint32_t room() const { return is_wide ? length | of_units : length; }
+    /// Of a text: its room, and the bytes that its slots have room for.
+    TextRoom room() const { return {length, is_wide}; }
     std::uint32_t text_bytes() const { return is_wide ? 3 * length : length; }
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// Of an array of all its dimensions.
@@ -320,6 +320,7 @@ struct Global {
     const Type* type = nullptr;  ///< structure, or block
     const Pou* pou = nullptr;
     const Variable* object = nullptr;  ///< a block of the program, which sources name only
+    bool is_statics = false;           ///< it has what VAR_STAT declares in functions
 };
 
 /// The instance that has a program's process image. No name of a source is like it.

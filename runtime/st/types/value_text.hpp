@@ -21,6 +21,22 @@ std::string time_literal(std::int64_t nanoseconds);
 /// CODESYS `LD#2020-02-29`, `LTIME#0ns`, and nine digits behind the point.
 enum class TimeForm : std::uint8_t { plain, of_long, of_long_in_codesys };
 
+/// A time that becomes a text. An instruction has it as a number.
+struct TimeText {
+    Type::Kind kind = Type::Kind::time;
+    TimeForm form = TimeForm::plain;
+    bool is_unsigned = false;
+
+    constexpr std::uint32_t number() const {
+        return static_cast<std::uint32_t>(kind) | static_cast<std::uint32_t>(form) << 8 |
+               std::uint32_t{is_unsigned} << 12;
+    }
+    static constexpr TimeText of_number(std::uint32_t number) {
+        return {static_cast<Type::Kind>(number & 0xFF), static_cast<TimeForm>(number >> 8 & 0xF),
+                (number >> 12 & 1) != 0};
+    }
+};
+
 /// Adds it, of a kind with a time. Allocates nothing.
 void add_time(fmt::memory_buffer& to, Type::Kind kind, Wide nanoseconds,
               TimeForm form = TimeForm::plain);

@@ -77,10 +77,10 @@ std::string widened(std::string_view bytes) {
     return text;
 }
 
-std::size_t kept_bytes(std::string_view text, std::uint64_t room) {
-    if ((room & of_units) == 0) return std::min<std::uint64_t>(text.size(), room);
+std::size_t kept_bytes(std::string_view text, TextRoom room) {
+    if (!room.counts_units()) return std::min<std::size_t>(text.size(), room.most());
     std::size_t kept = 0;
-    for (std::uint64_t left = room & ~std::uint64_t{of_units}; kept < text.size();) {
+    for (std::size_t left = room.most(); kept < text.size();) {
         const Utf8Character next = next_of(text.substr(kept));
         if (units_in(next.code) > left) break;
         left -= units_in(next.code);

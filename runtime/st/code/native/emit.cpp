@@ -54,7 +54,7 @@ class Writer {
         fmt::format_to(std::back_inserter(out_), format, std::forward<Arguments>(arguments)...);
     }
 
-    /// Of the instructions that there are.
+    /// The lines of the instructions that there are.
     void add_lines() {
         std::set<Op> used;
         for (const Instruction& in : code_.instructions) used.insert(in.op);

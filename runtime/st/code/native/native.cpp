@@ -108,7 +108,7 @@ class Patching {
         return fits;
     }
 
-    /// Of a place in the code where it will be.
+    /// Where a place in the code will be.
     std::uint64_t address(std::uint64_t place) const {
         return reinterpret_cast<std::uint64_t>(first_) + place;
     }
