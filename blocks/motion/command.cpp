@@ -25,6 +25,7 @@ void CommandBlock::run(const Scan& now, const Context& context) {
 }
 
 void CommandBlock::send(const Scan& now, const Context& context) {
+    job.called = now.index;
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
     const bool is_free = job.in == JobPlace::no_list;
