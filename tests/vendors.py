@@ -181,6 +181,9 @@ VENDORS = {
         Command("gear", "MC_GearIn", FOLLOWS, {"RatioNumerator": [1, 2, -1]}, reached("InGear", ALL)),
         Command("ratio", "MC_GearInDyn", FOLLOWS, {"GearRatio": [1, 0.5, -1]}, reached("InGear", ALL), "Enable", True),
         Command("leave", "MC_GearOut", "Slave := y", {}, ALL),
+        Command("phase", "MC_PhasingAbsolute", FOLLOWS, SHIFT, ALL),
+        Command("shift", "MC_PhasingRelative", FOLLOWS, SHIFT, ALL),
+        Command("stay", "MC_HaltPhasing", FOLLOWS, {}, ALL),
     ],
     "codesys": of_each_axis(of_softmotion) + [
         Command("gear", "MC_GearIn", FOLLOWS, {"RatioNumerator": [1, 2, -1], "BufferMode": [0, 1], "Acceleration": [-1] + ACCELERATIONS},

@@ -62,6 +62,12 @@ std::string reference_without_block(const Routine& suite) {
     return {};
 }
 
+/// What nobody gives is as TwinCAT has it: an axis has no power until MC_Power gives it.
+void take_power(const BlockType& type, std::byte* block) {
+    if (const Field* field = type.find_settable("needs_power"))
+        store(field->type, block + field->offset, true);
+}
+
 /// A run of all suites.
 class Suites {
   public:
@@ -74,6 +80,8 @@ class Suites {
               made, options, *program.type,
               [this](TestResult result) { return tell(std::move(result)); }, kept) {
         add_suites(program.name, *program.type, -1, 0);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            take_power(*kept[i].to, bench_.global(made.checked.globals.size() + i));
         for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
             add_global(made.checked.globals[i], static_cast<int>(i));
     }
