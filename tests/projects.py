@@ -1216,14 +1216,17 @@ def check_mapp_motion():
     """B&R: an axis of the configuration is one of the program, which mapp Motion's blocks move by its address; a library of another version stays declared."""
     write("Motion/Physical/one/cpu/mappMotion/Axes.axis", '<?xml version="1.0"?>\n<Configuration>\n  <Element ID="gFirst" Type="axis"/>\n'
           '  <Element ID="gSecond" Type="axis"/>\n  <Element ID="gSector" Type="sector"/>\n</Configuration>\n')
-    write("Motion/Logical/Track.typ", "TYPE\n\tMcSectorType : STRUCT\n\t\tcontrolif : UDINT;\n\tEND_STRUCT;\nEND_TYPE\n")
+    write("Motion/Physical/one/cpu/mappMotion/PnP/Config_8.pickregister", '<?xml version="1.0"?>\n<Configuration>\n'
+          '  <Element ID="gRegister" Type="pickregister"/>\n  <Element ID="gCore" Type="pickcore"/>\n</Configuration>\n')
+    write("Motion/Logical/Track.typ", "TYPE\n\tMcSectorType : STRUCT\n\t\tcontrolif : UDINT;\n\tEND_STRUCT;\n"
+          "\tMpPickRegisterType : STRUCT\n\t\tsize : UDINT;\n\tEND_STRUCT;\n\tMpPickCoreType : STRUCT\n\t\tparts : UDINT;\n\tEND_STRUCT;\nEND_TYPE\n")
     write("Motion/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
           "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
     write("Motion/Logical/P/Variables.var", "VAR\n\tbasic : MpAxisBasic;\n\tpar : MpAxisBasicParType;\n\tstep : USINT;\n\tpower : MC_Power;\n\tmove : MC_MoveAbsolute;\n"
           "\tstatus : MC_ReadStatus;\n\tis_connected, is_sector : BOOL;\nEND_VAR\n")
     write("Motion/Logical/P/Main.st", "PROGRAM _INIT\n\tgSecond := gSecond;\n\tpar.Velocity := 100;\n\tpar.Acceleration := 1000;\n\tpar.Deceleration := 1000;\n\tpar.Position := 20;\n"
           "END_PROGRAM\nPROGRAM _CYCLIC\n\tbasic.MpLink := ADR(gFirst);\n\tbasic.Enable := TRUE;\n\tbasic.Parameters := ADR(par);\n"
-          "\tis_connected := gFirst.controlif <> 0 AND gFirst.mappLinkInternal.Internal[0] <> 0;\n\tis_sector := gSector.controlif = 0;\n\tCASE step OF\n"
+          "\tis_connected := gFirst.controlif <> 0 AND gFirst.mappLinkInternal.Internal[0] <> 0;\n\tis_sector := gSector.controlif = 0 AND gRegister.size = 0 AND gCore.parts = 0;\n\tCASE step OF\n"
           "\t\t0: IF basic.Info.ReadyToPowerOn THEN basic.Power := TRUE; step := 1; END_IF\n\t\t1: IF basic.PowerOn THEN basic.Home := TRUE; step := 2; END_IF\n"
           "\t\t2: IF basic.IsHomed THEN basic.Home := FALSE; basic.MoveAbsolute := TRUE; step := 3; END_IF\n"
           "\t\t3: IF basic.InPosition THEN basic.MoveAbsolute := FALSE; step := 4; END_IF\n\tEND_CASE\n\tbasic();\n"

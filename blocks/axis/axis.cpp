@@ -130,6 +130,10 @@ std::span<const Field> Axis::fields() {
         local("phasing", &A::phased, &A::Running::place, "", "below 0: that does not move"),
         local("followers", &A::followers, "", "axes that follow it"),
         local("commands", &A::commands, "", "that it has begun"),
+        local(
+            "stopped", &A::stopped, "",
+            "1: what it has begun last is MC_Stop, MC_Halt or the end of a jog, or it has come to "
+            "a direction that MC_Power of TwinCAT does not enable"),
         local("waiting", &A::queue, &JobList::first, "", "below 0: no command waits"),
         local("base_velocity", &A::base, &MotionState::velocity, "{unit}/s",
               "of the motion without what is on top"),
@@ -172,6 +176,7 @@ void Axis::scan(const Scan& now, const Context& context) {
     }
     if (software_limits) keep_limits(context);
     if (enables_positive == 0 || enables_negative == 0) keep_directions(context);
+    if (wants_calls) watch_calls(context);
     if (is_counted || doing == Doing::following_axes) count_masters(context);
     publish();
 }
@@ -200,8 +205,8 @@ void Axis::wake_up(std::int64_t now) {
     extra = {};
     safe = {};
     offset = lasting = added_goal = added_before = 0;
-    withdrawn = added_paused = added_counted = 0;
-    is_counted = false;
+    withdrawn = added_paused = added_counted = stopped = 0;
+    is_counted = wants_calls = false;
     followers = 0;
     counted = counted_second = nowhere;
     powered = enables_positive = enables_negative = 1;

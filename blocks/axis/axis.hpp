@@ -90,7 +90,8 @@ struct Axis {
     double position = 0, velocity = 0, acceleration = 0, jerk = 0;
     bool error = false, homed = false;
     bool modulo = false, software_limits = false, has_drive = false;  ///< parameters
-    bool is_counted = false;  ///< its masters count it among their followers
+    bool is_counted = false;   ///< its masters count it among their followers
+    bool wants_calls = false;  ///< by the rules of what it has begun last
     Doing doing = Doing::holding;
     MotionState base;   ///< of the motion beneath, without what is added (README.md)
     double offset = 0;  ///< what the position is further than `base` and `extra`
@@ -141,14 +142,16 @@ struct Axis {
     std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
     std::int64_t powered = 1;   ///< what MC_Power wants
     std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
+    CommandRules switched_by = CommandRules::plcopen;  ///< whose MC_Power
     std::int64_t powered_in = nowhere;  ///< scan in which it got power: what that takes up was
                                         ///< sent without it
     Shortage shortage;                  ///< of the last sync_limits
     double actual_velocity = 0, last_actual = 0;  ///< of the drive
     std::int64_t renamed = 0;                     ///< times that the place got another position
     std::int64_t trigger_aborts = 0;
-    std::int64_t commands = 0;                                 ///< that it has begun
-    std::int64_t followers = 0;                                ///< axes that follow it
+    std::int64_t commands = 0;   ///< that it has begun
+    std::int64_t stopped = 0;    ///< 1: the last of them stops it, or MC_Power has
+    std::int64_t followers = 0;  ///< axes that follow it
     std::int64_t counted = nowhere, counted_second = nowhere;  ///< those, with is_counted
     Safe safe;
     std::int64_t group = nowhere;  ///< place of the group (blocks/group/) that it is in
@@ -372,6 +375,7 @@ struct Axis {
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, const Request& request);
     void keep_directions(const Context& context);
+    void watch_calls(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
     bool takes_over_stop(const Request& request) const;

@@ -3,6 +3,7 @@
 
 #include "blocks/axis/axis.hpp"
 #include "blocks/inputs.hpp"
+#include "runtime/model/device.hpp"
 
 namespace lineshaft {
 
@@ -121,6 +122,7 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
     const bool on = request.command == Command::power_on;
     powered = on ? 1 : 0;
     switched = 1;
+    switched_by = request.rules;
     enables_positive = request.enables_positive;
     enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
@@ -144,16 +146,31 @@ bool Axis::may_go(double way) const {
     return way == 0 || (way > 0 ? enables_positive : enables_negative) != 0;
 }
 
-/// What goes in a direction that is not enabled brakes, and that is an error: but for what brakes
-/// already.
+/// What goes in a direction that is not enabled brakes, and that is an error by most rules: but for
+/// what brakes already.
 void Axis::keep_directions(const Context& context) {
     constexpr double rounding = 1e-9;
     const double v = total().velocity;
     const bool brakes = doing == Doing::following_velocity && !added.exists() &&
                         velocity_motion.ramp.end.velocity == 0;
     if (may_go(v) || brakes || state == AxisState::disabled) return;
-    if (std::abs(v) > rounding * default_velocity)
-        fail(context, {scan_time}, MotionError::direction_not_enabled);
+    if (std::abs(v) <= rounding * default_velocity) return;
+    if (!rules_of(switched_by).stops_at_directions)
+        return fail(context, {scan_time}, MotionError::direction_not_enabled);
+    brake({scan_time});
+    abort_all(context);
+    state = AxisState::stopping;
+    stopped = 1;
+}
+
+/// By rules that want what moves an axis to be called in each scan of its task: one that has gone
+/// by without a call is an error.
+void Axis::watch_calls(const Context& context) {
+    if (!active.exists()) return;
+    const Job& job = context.at<Job>(active.place);
+    const std::int64_t scans = context.published[job.task];
+    if (job.ticket == active.ticket && scans != never && job.called + 1 < scans)
+        fail(context, {scan_time}, MotionError::not_called);
 }
 
 /// Without power, or with an error: once it stands it may be wanted again.

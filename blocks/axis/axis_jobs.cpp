@@ -184,6 +184,8 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
     ++commands;
+    wants_calls = rules_of(request.rules).wants_calls;
+    stopped = request.command == Command::stop || request.command == Command::halt ? 1 : 0;
     const bool was_overridden = is_overridden();
     state = *next;
     const bool counts = is_absolute(request.command) && !keeps_superimposed(request);

@@ -45,7 +45,7 @@ VAR_TEMP word : DWORD; power : LREAL; END_VAR
     word.%X5 := axis.homed;
     word.%X6 := axis.state = standstill;
     word.%X7 := axis.velocity = 0;
-    word.%X8 := axis.state = discrete_motion AND axis.jogs = 0;
+    word.%X8 := axis.state = discrete_motion AND axis.stopped = 0;
     word.%X9 := axis.jogs = 1;
     word.%X10 := axis.state = continuous_motion AND axis.jogs = 0;
     word.%X11 := axis.state = homing;

@@ -204,9 +204,10 @@ bool is_valid(const Axis& axis, const KeptState& machine) {
            machine.is_moment(axis.scan_time) && machine.is_moment(axis.shown.time) &&
            machine.is_moment(axis.led_at) && is_valid(axis.shortage) &&
            is_count(axis.scan_interval) && is_count(axis.renamed) &&
-           is_count(axis.trigger_aborts) && is_count(axis.commands) &&
-           counts_are_valid(axis, machine) && masters_are_valid(axis, machine) &&
-           steps_are_few(axis, machine) && (!machine.is_live || lists_are_valid(axis, machine));
+           is_one_of(axis.switched_by, CommandRules::softmotion) && is_count(axis.trigger_aborts) &&
+           is_count(axis.commands) && counts_are_valid(axis, machine) &&
+           masters_are_valid(axis, machine) && steps_are_few(axis, machine) &&
+           (!machine.is_live || lists_are_valid(axis, machine));
 }
 
 void mend(Axis& axis, const KeptState& machine) {

@@ -24,15 +24,22 @@ struct RulesOfVendor {
     bool keeps_superimposed = false;
     bool leaves_groups = false;   ///< a command to an axis that its group moves takes it out
     bool exchanges_cams = false;  ///< of a cam at work another CamTableID counts at once
+    bool wants_calls = false;     ///< what moves an axis is to be called in each scan of its task
+    bool stops_at_directions = false;  ///< of MC_Power: a direction that is not enabled is no error
 };
 
 inline constexpr RulesOfVendor rules_of_vendors[] = {
     {},
-    {.one_waits = true, .ends_endless = true, .halts_where_due = true, .reset_ends_stop = true},
+    {.one_waits = true,
+     .ends_endless = true,
+     .halts_where_due = true,
+     .reset_ends_stop = true,
+     .stops_at_directions = true},
     {.blends_moves_only = true,
      .keeps_superimposed = true,
      .leaves_groups = true,
-     .exchanges_cams = true},
+     .exchanges_cams = true,
+     .wants_calls = true},
 };
 static_assert(std::size(rules_of_vendors) == std::size(command_rules_names));
 

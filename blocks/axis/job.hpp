@@ -76,6 +76,7 @@ enum class MotionError : std::int64_t {
     buffer_full,
     not_where_interrupted,
     no_blending,
+    not_called,
 };
 
 inline constexpr std::string_view motion_error_names[] = {"none",
@@ -113,7 +114,8 @@ inline constexpr std::string_view motion_error_names[] = {"none",
                                                           "no_arc",
                                                           "buffer_full",
                                                           "not_where_interrupted",
-                                                          "no_blending"};
+                                                          "no_blending",
+                                                          "not_called"};
 
 inline constexpr std::string_view motion_error_texts[] = {
     "",
@@ -157,7 +159,9 @@ inline constexpr std::string_view motion_error_texts[] = {
     "the axes are not where MC_GroupInterrupt has stopped the group: move it there first",
     "nothing is blended behind a motion that does not end standing, as a velocity, a gear or a "
     "cam: "
-    "take BufferMode Buffered or Aborting"};
+    "take BufferMode Buffered or Aborting",
+    "the block whose command moves the axis has not been called in a scan of its task: call it in "
+    "each scan"};
 static_assert(std::size(motion_error_texts) == std::size(motion_error_names));
 
 constexpr std::string_view text_of(MotionError error) {
@@ -244,6 +248,7 @@ struct JobState {
     std::int64_t has_reached =
         0;  ///< `progress` has been `reached`, though it may have ended since
     std::int64_t told_by = nowhere, told_in = 0;
+    std::int64_t called = 0;                ///< scan of `task` that has called the command last
     MotionError error = MotionError::none;  ///< of `failed`
 
     /// What becomes of it, by a scan of the task that carries it out.

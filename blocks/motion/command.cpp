@@ -25,10 +25,11 @@ void CommandBlock::run(const Scan& now, const Context& context) {
 }
 
 void CommandBlock::send(const Scan& now, const Context& context) {
+    job.called = now.index;
     if (rising_edge(execute, last_execute)) return start(now, context);
     updating = updating && continuous_update;
     const bool is_free = job.in == JobPlace::no_list;
-    if (updating && is_free && differ(updated(), job.request) && is_at_work(context))
+    if ((updating || ends) && is_free && differ(updated(), job.request) && is_at_work(context))
         update(now, context);
 }
 
@@ -57,7 +58,8 @@ void CommandBlock::start(const Scan& now, const Context& context) {
     context.instance<Axis>(axis).send(context, now, job);
 }
 
-/// What ContinuousUpdate asks for. The BufferMode stays that by which the command has begun.
+/// What ContinuousUpdate or Ends asks for. The BufferMode stays that by which the command has
+/// begun.
 Request CommandBlock::updated() const {
     Request asked = pins;
     asked.mode = job.request.mode;
@@ -158,8 +160,7 @@ Field continuous_update() {
 
 Field ends() {
     return local("Ends", &CommandBlock::ends, "",
-                 "with ContinuousUpdate: what the command has begun, and nothing else, comes to "
-                 "standstill as by MC_Halt");
+                 "what the command has begun, and nothing else, comes to standstill as by MC_Halt");
 }
 
 Field position(std::string_view doc) {

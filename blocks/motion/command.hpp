@@ -45,7 +45,7 @@ struct CommandBlock : CommandState {
     std::int64_t axis = nowhere;
     bool continuous_update = false;
     bool updating = false;  ///< ContinuousUpdate, from the edge on
-    bool ends = false;      ///< with it: what it has begun, and nothing else, brakes as by MC_Halt
+    bool ends = false;      ///< what it has begun, and nothing else, brakes as by MC_Halt
     Request pins;
     Job job;
 
@@ -55,7 +55,8 @@ struct CommandBlock : CommandState {
     void run(const Scan& now, const Context& context);
 
     /// Sends the pins at a rising edge of Execute, and with ContinuousUpdate what has changed: from
-    /// an edge at which it is true on, until it goes false or the command has ended (2.4.6).
+    /// an edge at which it is true on, until it goes false or the command has ended (2.4.6). So it
+    /// does with Ends, as an MC_Halt.
     void send(const Scan& now, const Context& context);
     void show(const Context& context) { CommandState::show(job, context); }
 

@@ -6,35 +6,41 @@ namespace lineshaft::command_kinds {
 
 using namespace pin;
 
+/// With Ends, as the jogs of vendors have it.
+static std::vector<Field> with_end(std::vector<Field> fields) {
+    fields.push_back(ends());
+    return fields;
+}
+
 std::span<const Field> absolute_fields() {
-    static const auto fields = table(
+    static const auto fields = with_end(table(
         {continuous_update(), pin::position("target"), velocity(), acceleration(), deceleration(),
          jerk(), direction(), buffer_mode(),
          input("Period", &CommandBlock::pins, &Request::period, "{Axis}",
                "whose whole turns in Position count, of any axis, as TwinCAT's; below 0: Position "
                "counts over all turns; 0: of a modulo axis Position is a place in its period")},
-        done("the target is reached"));
+        done("the target is reached")));
     return fields;
 }
 
 std::span<const Field> distance_fields() {
-    static const auto fields = table({continuous_update(), distance(), velocity(), acceleration(),
-                                      deceleration(), jerk(), buffer_mode()},
-                                     done("the distance has been travelled"));
+    static const auto fields =
+        with_end(table({continuous_update(), distance(), velocity(), acceleration(), deceleration(),
+                        jerk(), buffer_mode()},
+                       done("the distance has been travelled")));
     return fields;
 }
 
 std::span<const Field> velocity_fields() {
     static const auto fields = [] {
-        auto made = table(
+        auto made = with_end(table(
             {continuous_update(), velocity("wanted, with its sign"), acceleration(), deceleration(),
              jerk(),
              direction("negative: the other way than Velocity says; current: as the axis moves"),
              buffer_mode()},
-            reached("InVelocity", "the velocity is reached"));
+            reached("InVelocity", "the velocity is reached")));
         made.push_back(
             local("Jogs", &CommandBlock::pins, &Request::jogs, "", "1: it is that of MC_MoveJog"));
-        made.push_back(ends());
         made.push_back(local("Ended", &CommandBlock::done, "", "by Ends: the axis stands"));
         return made;
     }();

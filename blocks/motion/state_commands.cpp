@@ -12,6 +12,9 @@ std::span<const Field> Power::fields() {
         output("Valid", &Power::active, "", "Status can be relied on"),
         output("Error", &Power::error, "", "there is no axis"),
         output("ErrorID", &Power::error_id, "", "why").one_of(motion_error_names),
+        local("Rules", &CommandBlock::pins, &Request::rules, "",
+              "whose rules count for a direction that is not enabled")
+            .one_of(command_rules_names),
     };
     return table;
 }

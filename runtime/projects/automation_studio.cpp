@@ -42,6 +42,8 @@ std::string_view type_of_element(std::string_view kind) {
     if (kind == "segment" || kind == "virtsegment") return "McSegmentType";
     if (kind == "processpoint") return "McProcessPointType";
     if (kind == "trackingpath") return "McTrackingPathType";
+    if (kind == "pickcore") return "MpPickCoreType";
+    if (kind == "pickregister") return "MpPickRegisterType";
     return kind.starts_with("axesgroup") ? "McAxesGroupType" : "MpComIdentType";
 }
 

@@ -21,9 +21,8 @@ bool is_of_hardware(const std::filesystem::path& file);
 bool is_mapp_configuration(const std::filesystem::path& file);
 
 /// Each Element is a global variable: an axis a McAxisType, which is AXIS_REF, a group a
-/// McAxesGroupType, of a track its parts, others a MpComIdentType, which programs refer to as
-/// MpLink. Several configurations of a project may have
-/// it.
+/// McAxesGroupType, of a track and of MpPick its parts, others a MpComIdentType, which programs
+/// refer to as MpLink. Several configurations of a project may have it.
 void read_mapp_configuration(const Reading& to, const std::string& path, const Mark& where);
 
 }  // namespace lineshaft::projects

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/bench.hpp"
 #include "runtime/st/library/kind.hpp"
 #include "runtime/st/library/suites_state.hpp"
@@ -61,6 +62,12 @@ std::string reference_without_block(const Routine& suite) {
     return {};
 }
 
+/// What nobody gives is as TwinCAT has it: an axis has no power until MC_Power gives it.
+void take_power(const BlockType& type, std::byte* block) {
+    if (const Field* field = type.find_settable("needs_power"))
+        store(field->type, block + field->offset, true);
+}
+
 /// A run of all suites.
 class Suites {
   public:
@@ -73,6 +80,8 @@ class Suites {
               made, options, *program.type,
               [this](TestResult result) { return tell(std::move(result)); }, kept) {
         add_suites(program.name, *program.type, -1, 0);
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            take_power(*kept[i].to, bench_.global(made.checked.globals.size() + i));
         for (std::size_t i = 0; i < made.checked.globals.size(); ++i)
             add_global(made.checked.globals[i], static_cast<int>(i));
     }
@@ -271,7 +280,7 @@ bool is_call_of_run(const Cursor& cursor) {
 }  // namespace
 
 bool calls_suites(const std::shared_ptr<const SourceFile>& file) {
-    if (file->text.find("RUN") == std::string::npos) return false;
+    if (lower(file->text).find("run") == std::string::npos) return false;
     Diagnostics unread;
     Cursor cursor{read_tokens(file, unread)};
     bool is_in_program = false;
