@@ -73,6 +73,7 @@ std::optional<ImageAddress> read_address(std::string_view text, AddressCount cou
     if (is_hierarchical || count != AddressCount::bytes) address.byte *= bytes_of_size(address);
     if (address.bits > 1) return text.empty() ? std::optional(address) : std::nullopt;
     const std::uint32_t together = bits_together(count);
+    if (text.empty() && count == AddressCount::sizes_apart) return address;
     if (text.empty()) {
         set_bit(address, *first / together, *first % together, count);
         return address;

@@ -23,9 +23,10 @@ struct ImageAddress {
 
 /// What the number of an address counts.
 enum class AddressCount : std::uint8_t {
-    bytes,  ///< `%MW1` has the second byte of `%MW0`
-    sizes,  ///< `%MW1` is the second word, `%MX1.0` a bit of the second byte
-    words,  ///< as sizes, and `%MX1.9` is a bit of `%MW1`
+    bytes,        ///< `%MW1` has the second byte of `%MW0`
+    sizes,        ///< `%MW1` is the second word, `%MX1.0` a bit of the second byte
+    words,        ///< as sizes, and `%MX1.9` is a bit of `%MW1`
+    sizes_apart,  ///< as sizes, which share no bits; `%QX12` is `%QX12.0`, as in OpenPLC
 };
 
 inline constexpr int areas = 3;

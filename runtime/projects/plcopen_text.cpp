@@ -40,6 +40,20 @@ pugi::xml_node first_element(pugi::xml_node node) {
     return {};
 }
 
+/// What a type of the file is derived from, which is not such a type.
+pugi::xml_node base_of(const XmlFile& file, pugi::xml_node kind) {
+    const pugi::xml_node types = file.root().child("types").child("dataTypes");
+    for (int depth = 0; depth < deepest_type && std::string_view(kind.name()) == "derived";
+         ++depth) {
+        const std::string name = file.plain(kind.attribute("name"));
+        const pugi::xml_node declared = types.find_child([&](pugi::xml_node type) {
+            return st::same_name(file.plain(type.attribute("name")), name);
+        });
+        kind = first_element(declared.child("baseType"));
+    }
+    return kind;
+}
+
 /// What CODESYS and TwinCAT have beside the element, beside its interface, or in it.
 pugi::xml_node addition_of(pugi::xml_node element, const char* name) {
     if (const pugi::xml_node own = element.child(name)) return own;
@@ -153,7 +167,7 @@ void PlcopenText::add_declared(pugi::xml_node declared, const char* type) {
 
 /// The editors of OpenPLC and Beremiz keep texts without those that they compile them with.
 std::string_view PlcopenText::quote_of(pugi::xml_node type, pugi::xml_node value) const {
-    const std::string kind = lower(std::string(first_element(type).name()));
+    const std::string kind = lower(std::string(base_of(file_, first_element(type)).name()));
     const std::string_view quote = kind == "string" ? "'" : kind == "wstring" ? "\"" : "";
     const std::string text = file_.plain(value.attribute("value"));
     const bool has_quotes = text.starts_with(quote) || text.ends_with(quote);

@@ -96,10 +96,12 @@ void NetworkText::evaluate_box(std::size_t i) {
     state.is_done = true;
 }
 
-/// A variable for ENO, if a line comes from there.
+/// A variable for ENO, if a line comes from there, or what the block gives is taken only then.
 std::string NetworkText::variable_of_eno(const Element& box, State& state) {
     const auto eno = std::ranges::find_if(box.outputs, is_eno);
-    if (eno == box.outputs.end() || !is_used(state, *eno)) return {};
+    const auto is_led_to = [](const Pin& pin) { return is_en(pin) && !pin.lines.empty(); };
+    const bool is_asked = context_.is_of_matiec && std::ranges::any_of(box.inputs, is_led_to);
+    if (eno == box.outputs.end() || !(is_used(state, *eno) || is_asked)) return {};
     std::string name = context_.variables.make("_wire", "BOOL");
     state.enabled = words(name, place_of(box), "BOOL");
     return name;
@@ -374,18 +376,16 @@ std::string NetworkText::initial_value(const std::string& type) {
     return context_.variables.make("_none", type);
 }
 
-/// MatIEC's editors let a variable keep its value where the one function that leads to it has
-/// done nothing.
+/// MatIEC's editors let a variable keep its value where the one box that leads to it has done
+/// nothing.
 Value NetworkText::enabled_with(const Element& variable) const {
     const bool is_variable =
         variable.kind == Drawn::out_variable || variable.kind == Drawn::in_out_variable;
     const auto& inputs = variable.inputs;
     if (!context_.is_of_matiec || !is_variable || inputs.front().lines.size() != 1) return {};
     const std::size_t from = inputs.front().lines.front().from;
-    const bool is_function = drawing_.elements[from].kind == Drawn::block &&
-                             attribute(drawing_.elements[from], "instanceName").empty();
     const Value& enabled = states_[from].enabled;
-    return is_function && !enabled.is_always ? enabled : Value{};
+    return enabled.is_always ? Value{} : enabled;
 }
 
 /// Where transitions look at what was evaluated at the end of the last scan.

@@ -22,8 +22,10 @@ bool may_begin(const Checking& c) {
     const Variable* variable = c.beginning.variable;
     if (!variable) return false;
     if (!c.routine) return variable->space == Space::global && !variable->constant;
-    const bool is_own = variable->section == Section::local || variable->section == Section::temp ||
-                        variable->section == Section::kept || variable->section == Section::output;
+    const bool is_own =
+        variable->section == Section::local || variable->section == Section::temp ||
+        variable->section == Section::kept || variable->section == Section::output ||
+        (variable->section == Section::input && c.routine->pou->kind == PouKind::function_block);
     return is_own && !variable->constant && variable->space == Space::frame;
 }
 
@@ -173,7 +175,7 @@ bool is_called(const Checking& c, Phase phase, const Type* type) {
             return begins || is_called(c, phase, member->type);
         });
     if (type->kind != Kind::block || phase == Phase::members) return false;
-    return phase == Phase::init ? constructor_of(*type) || beginning_of_parts(*type)
+    return phase == Phase::init ? constructor_of(*type) || beginning_of(*type)
                                 : !methods_behind(*type->routine).empty();
 }
 
@@ -230,7 +232,7 @@ void construct(Checking& c, const Constructing& at, const Type& type,
     }
     if (type.kind == Kind::block) {
         const auto given = values ? *values : std::vector<Argument>{};
-        if (const Routine* begins = beginning_of_parts(type))
+        if (const Routine* begins = beginning_of(type))
             to.push_back(make_call_statement(
                 c, make_call(c, at.like, make_member(c, part(), begins->pou->name.text), {})));
         if (const Routine* own = constructor_of(type))
@@ -363,6 +365,7 @@ bool begin_with(Checking& c, Expression*& value, const Type& type) {
     if (!may_begin(c)) return false;
     Statement* s = make_assignment(c, value->place, place_of(c, *value), value);
     if (type.is_alias()) s->op = Word::reference_assign;
+    c.beginnings.insert(s);
     Routine& of = c.routine ? *c.routine : begin_of_globals(c, *value);
     const Variable& variable = *c.beginning.variable;
     const bool is_of_one = is_of_call(of, variable);
@@ -439,21 +442,6 @@ void begin_globals(Checking& c) {
                       make_once(c, like, begun,
                                 {make_call_statement(
                                     c, make_call(c, like, make_name(c, like, begin.name), {}))}));
-    }
-}
-
-void note_update(Checking& c, const Variable& variable) {
-    Routine* update = find_in(c.users.routines, fmt::format("{}.Update", variable.text));
-    if (update && update != c.routine && std::ranges::find(c.updates, update) == c.updates.end())
-        c.updates.push_back(update);
-}
-
-void bring_up_to_date(Checking& c, Routine& routine) {
-    const Expression like = like_name(routine.pou->name, routine.pou->place);
-    for (Routine* update : std::exchange(c.updates, {})) {
-        Expression* call = make_call(c, like, make_name(c, like, update->name), {});
-        check_routine_call(c, call, *update, true);
-        routine.body.insert(routine.body.begin(), make_call_statement(c, call));
     }
 }
 

@@ -138,6 +138,13 @@ bool shares_step(const ChartTransition& a, const ChartTransition& b) {
         a.from, [&](const Token& step) { return find_called(b.from, step.text) != nullptr; });
 }
 
+/// The first of two from one step goes on alone; in MatIEC only if it has a priority, so that
+/// several branches begin at once.
+bool excludes(const ChartWriter& w, const ChartTransition& first, const ChartTransition& other) {
+    const bool leaves_at_once = !w.is_matiec() || first.priority.word == Word::integer;
+    return leaves_at_once && shares_step(first, other);
+}
+
 Block joined(Block first, const Block& second) {
     first.insert(first.end(), second.begin(), second.end());
     return first;
@@ -166,7 +173,7 @@ Block write_conditions(ChartWriter& w, const Chart& chart) {
         Expression* may = nullptr;
         for (const Token& step : t.from) may = w.joined(Word::and_, may, w.active(step));
         for (std::size_t k = 0; k < i; ++k)
-            if (shares_step(*order[k], t))
+            if (excludes(w, *order[k], t))
                 may = w.joined(Word::and_, may, w.negated(w.name(at, fired_name(w, k))));
         w.out.push_back(w.set(w.name(at, fired_name(w, i)), w.truth(at, false)));
         w.out.push_back(w.when(may, {w.set(w.name(at, fired_name(w, i)), condition_of(w, t))}));

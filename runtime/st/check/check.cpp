@@ -47,7 +47,6 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     resolve_bases(c);
     declare_globals(c);
     declare_routines(c);
-    begin_parts_of_blocks(c);
     check_classes(c);
     configure_programs(c);
     check_initial_values(c);

@@ -160,6 +160,7 @@ struct Checking {
         bool is_constructed = false;  ///< FB_init comes before, so that constants are assigned, too
         bool is_made = false;         ///< something of it is assigned
     } beginning = {};
+    std::unordered_set<const Statement*> beginnings = {};  ///< whose targets others may not assign
     /// Whose constants a member of a structure that a routine writes out may begin with.
     std::unordered_map<const Variable*, Routine*> routines_of_members = {};
     /// What members begin with that is no constant: each variable of their type assigns it.

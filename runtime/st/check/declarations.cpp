@@ -173,8 +173,10 @@ Meant meaning_of(Checking& c, const Routine& routine, const DeclarationBlock& bl
     const bool is_wide = type == &unsized_wide_string(place) && type->is_wide;
     const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
     if (is_value && is_unsized) type = &longer_string(c, is_wide);
-    if (section == Section::in_out && is_unsized)
-        type = is_wide ? &open_wide_string_type : &open_string_type;
+    const bool is_text_of_br =
+        type && type->kind == Kind::text && place.dialect().vendor == Vendor::automation_studio;
+    if (section == Section::in_out && (is_unsized || is_text_of_br))
+        type = type->is_wide ? &open_wide_string_type : &open_string_type;
     const bool is_of_own = is_its_own_block(c, routine, type);
     return {.declared = declared,
             .type = type,

@@ -64,6 +64,11 @@ bool differs_in_capitals(const Variable& known, const Token& name);
 /// A PROGRAM of B&R has the name of its folder, which is none of its language.
 bool is_folder(const Pou& pou);
 
+/// A library's variable that its FUNCTION "name.Update" writes is written at the beginning of each
+/// call that names it: the first notes it, the other puts the calls in front.
+void note_update(Checking& c, const Variable& variable);
+void bring_up_to_date(Checking& c, Routine& routine);
+
 // initial_values.cpp
 
 /// Checks those of all variables, and what stands behind BEGIN of data blocks.
@@ -109,22 +114,16 @@ void construct_one(Checking& c, const Expression& like, Routine& routine, const 
 /// instance of.
 void begin_globals(Checking& c);
 
-/// A library's variable that its FUNCTION "name.Update" writes is written at the beginning of each
-/// call that names it: the first notes it, the other puts the calls in front.
-void note_update(Checking& c, const Variable& variable);
-void bring_up_to_date(Checking& c, Routine& routine);
-
 /// These assignments and calls: of a base first, and of its FB_init in one that stands for it.
 Block beginnings(Checking& c, Routine& routine);
 
-// parts_of_blocks.cpp
+// beginnings_of_blocks.cpp
 
-/// Behind the declaration of all variables: a block without an FB_init of its own that has
-/// instances with one gets a method that begins them, which whoever has an instance of it calls at
-/// first.
-void begin_parts_of_blocks(Checking& c);
+/// Behind the check of what its variables begin with: a block that begins with what runs gets a
+/// method for that, which whoever has an instance of it calls before anything is read of it.
+void begin_block(Checking& c, Routine& block);
 /// That method of a block; null: it has none.
-Routine* beginning_of_parts(const Type& block);
+Routine* beginning_of(const Type& block);
 /// A checked call that lets an instance begin, which is about to be copied; null: it has nothing to
 /// begin with that runs.
 Statement* begin_to_copy(Checking& c, const Expression& instance);

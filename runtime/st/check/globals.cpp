@@ -1,8 +1,13 @@
+#include <algorithm>
+#include <utility>
+
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/types.hpp"
 
 namespace lineshaft::st {
@@ -190,6 +195,21 @@ void declare_globals(Checking& c) {
         c.checked.globals.push_back({std::string(pou->name.text), type, pou});
         c.globals.emplace(pou->name.text, &variable);
         c.note(variable.name.place, variable);
+    }
+}
+
+void note_update(Checking& c, const Variable& variable) {
+    Routine* update = find_in(c.users.routines, fmt::format("{}.Update", variable.text));
+    if (update && update != c.routine && std::ranges::find(c.updates, update) == c.updates.end())
+        c.updates.push_back(update);
+}
+
+void bring_up_to_date(Checking& c, Routine& routine) {
+    const Expression like{.token = routine.pou->name, .place = routine.pou->place};
+    for (Routine* update : std::exchange(c.updates, {})) {
+        Expression* call = make_call(c, like, make_name(c, like, update->name), {});
+        check_routine_call(c, call, *update, true);
+        routine.body.insert(routine.body.begin(), make_call_statement(c, call));
     }
 }
 

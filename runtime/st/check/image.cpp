@@ -69,7 +69,7 @@ Image& image_of(Checking& c, const Place& at) {
     Image& image = c.checked.image;
     if (image.global < 0) {
         image.global = static_cast<int>(c.checked.globals.size());
-        image.sizes_are_apart = at.dialect().addresses_of_sizes_are_apart;
+        image.sizes_are_apart = at.dialect().addresses_count == AddressCount::sizes_apart;
         c.checked.globals.push_back({std::string(image_name), &c.make_type(Kind::structure, "")});
     }
     return image;
@@ -97,7 +97,8 @@ bool takes_size(Checking& c, const Variable& variable, ImageAddress& address, co
         "X is of BOOL, B of 8 bits, W of 16, D of 32, L of 64; arrays and structures begin at a "
         "byte";
     const Dialect& dialect = at.place.dialect();
-    if (address.bits == 1 || !dialect.is_loose || dialect.addresses_of_sizes_are_apart)
+    const bool is_apart = dialect.addresses_count == AddressCount::sizes_apart;
+    if (address.bits == 1 || !dialect.is_loose || is_apart)
         return c.fail(code::type_does_not_fit, at.place, what, std::string(help));
     c.warn(code::type_does_not_fit, at.place, what, std::string(help));
     address.bits = static_cast<std::uint8_t>(bits);

@@ -295,43 +295,68 @@ bool is_first_element(const Expression& value, const Type& type) {
     return value.kind == E::list ? value.is_structure() : sign.kind == E::constant;
 }
 
+void check_one(Checking& c, Variable& variable) {
+    if (!variable.initial || !variable.type || variable.space == Space::constant) return;
+    check_initial(c, variable);
+}
+
+void check_own_initials(Checking& c, Routine& routine, std::unordered_set<const Routine*>& done);
+
+/// Those in the blocks that `type` is or has instances of.
+void check_initials_within(Checking& c, const Type* type,
+                           std::unordered_set<const Routine*>& done) {
+    if (!type) return;
+    if (type->kind == Kind::array) check_initials_within(c, type->element, done);
+    if (type->kind == Kind::structure)
+        for (const Variable* member : type->members) check_initials_within(c, member->type, done);
+    if (type->kind == Kind::block) check_own_initials(c, *type->routine, done);
+}
+
+/// Those of a routine's variables, behind those of its base and of its instances: what runs for
+/// these is known then.
+void check_own_initials(Checking& c, Routine& routine, std::unordered_set<const Routine*>& done) {
+    if (!done.insert(&routine).second) return;
+    if (routine.base) check_own_initials(c, *routine.base, done);
+    for (const Variable& variable : routine.variables)
+        check_initials_within(c, variable.type, done);
+    c.routine = &routine;
+    // By index: ADR of a constant adds a variable.
+    for (std::size_t i = 0; i < routine.variables.size(); ++i) {
+        Variable& variable = routine.variables[i];
+        if (variable.initial && variable.section == Section::in_out && !is_kept_in_out(variable))
+            c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
+                   "leave ':= ...' out; the caller gives the variable");
+        begin_members(c, variable);
+        begin_instance(c, variable);
+        check_one(c, variable);
+        follow_init(c, variable);
+    }
+    begin_block(c, routine);
+}
+
 }  // namespace
 
 void check_initial_values(Checking& c) {
     const auto is_member = [](const Variable& v) { return v.space == Space::frame && !v.of; };
-    const auto check_one = [&](Variable& variable) {
-        if (!variable.initial || !variable.type || variable.space == Space::constant) return;
-        check_initial(c, variable);
-    };
     for (Variable& variable : c.checked.variables) {
         if (!is_member(variable)) continue;
         const auto routine = c.routines_of_members.find(&variable);
         c.routine = routine == c.routines_of_members.end() ? nullptr : routine->second;
-        check_one(variable);
+        check_one(c, variable);
     }
+    std::unordered_set<const Routine*> done;
+    // By index: a block that begins with what runs adds a method.
+    for (std::size_t i = 0; i < c.checked.routines.size(); ++i)
+        check_own_initials(c, c.checked.routines[i], done);
     c.routine = nullptr;
-    for (Variable& variable : c.checked.variables) {
+    for (std::size_t i = 0; i < c.checked.variables.size(); ++i) {
+        Variable& variable = c.checked.variables[i];
         begin_members(c, variable);
-        if (!is_member(variable)) check_one(variable);
         begin_instance(c, variable);
+        if (!is_member(variable)) check_one(c, variable);
         follow_init(c, variable);
     }
     for (const Global& global : c.checked.globals) check_data_block(c, global);
-    for (Routine& routine : c.checked.routines) {
-        c.routine = &routine;
-        // By index: ADR of a constant adds a variable.
-        for (std::size_t i = 0; i < routine.variables.size(); ++i) {
-            Variable& variable = routine.variables[i];
-            if (variable.initial && variable.section == Section::in_out &&
-                !is_kept_in_out(variable))
-                c.fail(code::wrong_place, variable.name.place, "a VAR_IN_OUT has no initial value",
-                       "leave ':= ...' out; the caller gives the variable");
-            begin_members(c, variable);
-            begin_instance(c, variable);
-            check_one(variable);
-            follow_init(c, variable);
-        }
-    }
     c.routine = nullptr;
     give_axes_to_tests(c);
     begin_globals(c);

@@ -10,6 +10,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/s5.hpp"
 #include "runtime/st/check/statements.hpp"
+#include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/s5.hpp"
@@ -220,20 +221,44 @@ const Type* use(Checking& c, Expression*& e, Variable& variable) {
     return variable.type;
 }
 
+namespace {
+
+/// The type of that name, an enumeration even if it stands behind the type that asks for it.
+const Type* known_type(Checking& c, NamedType& named) {
+    const bool is_behind = !c.knows_types && !named.type && !named.visiting &&
+                           named.declaration->type->kind == TypeText::Kind::enumeration;
+    return is_behind ? resolve_declared(c, named) : named.type;
+}
+
+/// The value, of an enumeration behind the type that asks for it, too: all that have it are known
+/// then.
+const NamedValue* find_value(Checking& c, const Token& token) {
+    const NamedValue* found = c.look_up(&Names::values, token);
+    if (found || c.knows_types) return found;
+    const auto is_it = [&](const Argument& a) { return same_name(a.name.text, token.text); };
+    for (const TypeDeclaration& declared : c.tree.types)
+        if (std::ranges::any_of(declared.type->values, is_it))
+            if (NamedType* named = c.look_up(&Names::types, declared.name)) known_type(c, *named);
+    return c.look_up(&Names::values, token);
+}
+
+}  // namespace
+
 const Type* enumeration_of(Checking& c, const Expression& member) {
     const Expression& of = *member.operands[0];
     const auto name = of.kind == E::name ? of.token : qualified_name(c, of);
     if (!name || name->local) return nullptr;
     const Variable* variable = find_variable(c, *name);
     if (variable && !(variable->type && variable->type->is_scalar())) return nullptr;
-    const NamedType* named = c.look_up(&Names::types, *name);
-    const Type* type = named ? named->type : nullptr;
+    NamedType* named = c.look_up(&Names::types, *name);
+    const Type* type = named ? known_type(c, *named) : nullptr;
     if (!type || !type->has_values()) return nullptr;
     c.note(of.place, *named);
     return type;
 }
 
 const Type* become_value(Checking& c, Expression*& e, const Type& type, std::size_t index) {
+    if (type.is_real()) return become(c, e, type, {.real = type.reals[index]});
     return become(c, e, type, {.integer = type.numbers[index]});
 }
 
@@ -325,7 +350,7 @@ bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
 /// A value that is named without its enumeration. Empty: none is called so.
 std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
     const Token& token = e->token;
-    const NamedValue* value = token.local ? nullptr : c.look_up(&Names::values, token);
+    const NamedValue* value = token.local ? nullptr : find_value(c, token);
     if (!value) return {};
     if (value->ambiguous)
         return c.fail(code::not_declared, e->place,

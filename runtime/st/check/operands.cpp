@@ -32,6 +32,13 @@ void unite_texts(Checking& c, Expression*& a, Expression*& b) {
     single ? coerce(c, text, char_type) : coerce(c, character, string_type);
 }
 
+bool is_beyond_single(const Expression& e, const Type& other, const Type* expected) {
+    const bool is_taken =
+        e.place.dialect().real_literals_are_lreal || !expected || !is_single(*expected);
+    return is_taken && is_single(other) && e.kind == E::constant && e.type->is_real() &&
+           std::abs(e.constant.real) > double{std::numeric_limits<float>::max()};
+}
+
 bool make_concrete(Checking& c, Expression*& e, const Type& other) {
     const Type& type = *e->type;
     if (!type.is_any()) return true;
@@ -54,13 +61,6 @@ bool mixes_signs_of_64(const Expression& e) {
     const bool are_integers = a.kind == Kind::integer && b.kind == Kind::integer;
     return e.place.dialect().is_loose && are_integers && a.is_signed != b.is_signed &&
            (a.is_unsigned_64() || b.is_unsigned_64());
-}
-
-/// `1.0E300` beside a REAL: CODESYS reckons both as LREALs.
-bool is_beyond_single(const Expression& e, const Type& other) {
-    return is_single(other) && e.kind == E::constant && e.type->is_real() &&
-           e.place.dialect().real_literals_are_lreal &&
-           std::abs(e.constant.real) > double{std::numeric_limits<float>::max()};
 }
 
 /// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
@@ -124,7 +124,8 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
         return typed.kind == Kind::integer ? common_type(typed, real_type) : nullptr;
     };
     if (const Type* real = a.is_any() ? real_of(a, b) : real_of(b, a)) common = real;
-    if (is_beyond_single(*left, b) || is_beyond_single(*right, a)) common = &lreal_type;
+    if (is_beyond_single(*left, b, expected) || is_beyond_single(*right, a, expected))
+        common = &lreal_type;
     if (const Type* wider =
             a.is_any() ? wider_for(*left, b, expected) : wider_for(*right, a, expected))
         if (!expected || !expected->is_integer() || widens(*wider, *expected)) common = wider;

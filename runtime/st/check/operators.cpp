@@ -230,6 +230,25 @@ bool may_be_single(const Type& a, const Type& b, bool is_due) {
     return fits(a) && fits(b) && (is_due || is_single(a) || is_single(b));
 }
 
+/// The power of two whole numbers without a type is a number without one, too: a real one, but
+/// where a whole one is due. Empty: it is not known, or has too many digits.
+std::optional<const Type*> fold_power(Checking& c, Expression*& e, const Type* expected) {
+    const Expression &left = *e->operands[0], &right = *e->operands[1];
+    const bool is_whole = is_constant(left) && is_constant(right) &&
+                          left.type->kind == Kind::any_integer &&
+                          right.type->kind == Kind::any_integer && right.constant.integer >= 0;
+    if (!is_whole || (right.constant.integer > 64 && left.constant.integer > 1)) return {};
+    constexpr Wide most = Wide{1} << 64;
+    Wide value = 1;
+    for (Wide i = 0; i < right.constant.integer && value < most && value > -most; ++i)
+        value = product(value, left.constant.integer);
+    if (value >= most || value <= -most)
+        return c.fail(code::value_out_of_range, e->place, "the result is out of range");
+    if (!expected || expected->is_real())
+        return become(c, e, any_real_type, {.real = static_cast<double>(value)});
+    return become(c, e, any_integer_type, {.integer = value});
+}
+
 const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
     for (Expression*& operand : e->operands) become_number(c, operand);
@@ -237,24 +256,11 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         if (!operand->type->is_number())
             return c.fail(code::type_does_not_fit, operand->place,
                           fmt::format("'**' does not go with {}", describe(*operand->type)));
-    const bool whole = is_constant(*left) && is_constant(*right) &&
-                       left->type->kind == Kind::any_integer &&
-                       right->type->kind == Kind::any_integer && right->constant.integer >= 0;
-    if (whole) {
-        constexpr Wide most = Wide{1} << 64;
-        Wide value = 1;
-        for (Wide i = 0; i < right->constant.integer && value < most && value > -most; ++i)
-            value = product(value, left->constant.integer);
-        if (right->constant.integer <= 64 || left->constant.integer <= 1) {
-            if (value >= most || value <= -most)
-                return c.fail(code::value_out_of_range, e->place, "the result is out of range");
-            return become(c, e, any_integer_type, {.integer = value});
-        }
-    }
+    if (const auto folded = fold_power(c, e, expected)) return *folded;
     const bool is_due = expected && is_single(*expected),
-               is_of_codesys = e->place.dialect().vendor == Vendor::codesys;
-    const bool narrow = is_of_codesys ? are_single(*left->type, *right->type)
-                                      : may_be_single(*left->type, *right->type, is_due);
+               is_wide = e->place.dialect().real_literals_are_lreal;
+    const bool narrow = is_wide ? are_single(*left->type, *right->type)
+                                : may_be_single(*left->type, *right->type, is_due);
     const Type& type = narrow ? real_type : lreal_type;
     const auto widen = [&](Expression*& operand) {
         if (widens(*operand->type, type) || operand->type->is_any())
@@ -263,7 +269,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         return true;
     };
     if (!widen(left) || !widen(right)) return nullptr;
-    if (narrow || !is_due || !is_of_codesys) return &type;
+    if (narrow || !is_due || !is_wide) return &type;
     e->type = &type;
     return convert(c, e, real_type);
 }
@@ -334,10 +340,19 @@ bool goes_with_lreal(Checking& c, Expression& e) {
     return left->kind == E::binary && !is_logic(e.op) && is_variable && is_lreal(check(c, right));
 }
 
+/// What is due on the right of a comparison. A sum is not kept in the type on the left: in
+/// `s > 255 - s` of a SINT it is a DINT.
+const Type* due_beside(const Type* left, const Expression& right) {
+    const bool is_reckoned = right.kind == E::binary || right.kind == E::unary;
+    const bool is_short = left && left->kind == Kind::integer && left->bits < dint_type.bits;
+    return is_reckoned && is_short ? &dint_type : left;
+}
+
 const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     Expression *&left = e->operands[0], *&right = e->operands[1];
     if (is_comparison(e->op)) take_type_names(c, *e);
-    const Type* wanted = is_comparison(e->op) || is_logic(e->op) ? nullptr : expected;
+    const bool may_be_due = !is_logic(e->op) || (expected && expected->kind == Kind::bits);
+    const Type* wanted = is_comparison(e->op) || !may_be_due ? nullptr : expected;
     const bool name_first = left->kind == E::name && is_comparison(e->op);
     if (name_first && (left->token.quoted || !find_variable(c, left->token))) {
         check(c, right);
@@ -347,7 +362,7 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     if (!wanted && goes_with_lreal(c, *e)) wanted = &lreal_type;
     check(c, left, wanted);
     if (!wanted && is_lreal(left->type)) wanted = left->type;
-    check(c, right, is_comparison(e->op) ? left->type : wanted);
+    check(c, right, is_comparison(e->op) ? due_beside(left->type, *right) : wanted);
     if (!left->type || !right->type) return nullptr;
     if (is_comparison(e->op)) take_null_variant(c, *e);
     if (e->op == Word::equal || e->op == Word::unequal) take_addresses(c, *e);

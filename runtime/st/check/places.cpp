@@ -9,6 +9,7 @@
 #include "runtime/st/check/namespaces.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/parameters.hpp"
@@ -105,6 +106,14 @@ Routine* part_behind_field(Checking& c, const Expression& e) {
 
 }  // namespace
 
+/// ENO of an instance that has no such output: without an EN it was executed.
+static const Type* check_enabled(Checking& c, Expression*& e) {
+    Variable* flag = enable_flag(c, *e->operands[0]);
+    if (!flag) return become(c, e, bool_type, {.integer = 1});
+    e = make_use(c, *e, *flag);
+    return use(c, e, *flag);
+}
+
 const Type* check_member(Checking& c, Expression*& e) {
     name_block_of_list(c, *e);
     if (const auto name = qualified_name(c, *e)) {
@@ -156,8 +165,7 @@ const Type* check_member(Checking& c, Expression*& e) {
         e = e->operands[0];
         return type;
     }
-    if (type->is_instance() && same_name(name, "eno"))  // what has no such output was executed
-        return become(c, e, bool_type, {.integer = 1});
+    if (type->is_instance() && same_name(name, "eno")) return check_enabled(c, e);
     if (const Type* bit = check_named_bit(c, e, *type)) return bit;
     if (const auto address = check_data_address(c, e)) return *address;
     return fail_member(c, *e, *type, name);

@@ -54,6 +54,14 @@ Statement* if_enabled(Checking& c, const Statement& s, bool has_eno) {
     then.push_back(make_with(c, s, make_with(c, call, std::move(others))));
     if (is_told && !succeeds) then.push_back(eno_is(make_boolean(c, call, true)));
     if (enabled) otherwise.push_back(eno_is(make_boolean(c, call, false)));
+    if (Variable* flag = enable ? enable_flag(c, *call.operands[0]) : nullptr) {
+        const auto flag_is = [&](bool value) {
+            return make_assignment(c, s.place, make_use(c, call, *flag),
+                                   make_boolean(c, call, value));
+        };
+        then.push_back(flag_is(true));
+        otherwise.push_back(flag_is(false));
+    }
     assign_initial_value(c, s, otherwise);
     return make_if(c, s.place, condition, std::move(then), std::move(otherwise));
 }
@@ -205,6 +213,21 @@ bool rewrite(Checking& c, Statement*& s) {
     s = if_enabled(c, *s, routine != nullptr);
     check(c, s);
     return true;
+}
+
+Variable* enable_flag(Checking& c, const Expression& instance) {
+    const bool is_name = c.routine && c.routine->has_instances() && instance.kind == E::name;
+    const Variable* of = is_name ? find_variable(c, instance.token) : nullptr;
+    if (!of || of->space != Space::frame || of->of != c.routine->pou || !of->type ||
+        !of->type->is_instance())
+        return nullptr;
+    const std::string name = fmt::format("{} ENO", of->text);
+    if (Variable* known = find_in(c.routine->names, name)) return known;
+    Variable& made =
+        c.make_variable(*c.routine, of->name, c.checked.names.emplace_back(name), &bool_type);
+    made.initial = make_boolean(c, instance, true);
+    c.routine->names.emplace(made.text, &made);
+    return &made;
 }
 
 Variable& eno_of(Checking& c, Routine& routine) {

@@ -224,8 +224,17 @@ const Type* unite_from(Checking& c, Expression& call, std::size_t first, const T
                       "convert them");
     const bool is_bit = expected && expected->kind == Kind::boolean && are_bits(call, first);
     const bool is_wanted = is_bit || (expected && (expected->is_number() || expected->is_bits()));
-    if (common->is_any() && is_wanted) common = &expected->plain();
+    const bool is_whole = common->kind == Kind::any_integer && expected && expected->is_real();
+    if (is_whole)
+        common = &whole_of_literals(call, first, *expected);
+    else if (common->is_any() && is_wanted)
+        common = &expected->plain();
     if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
+    const auto is_beyond = [&](const Argument& argument) {
+        return is_beyond_single(*argument.value, *common, expected);
+    };
+    const auto begin = call.arguments.begin() + static_cast<std::ptrdiff_t>(first);
+    if (std::any_of(begin, call.arguments.end(), is_beyond)) common = &lreal_type;
     return coerce_from(c, call, first, common->plain()) ? &common->plain() : nullptr;
 }
 

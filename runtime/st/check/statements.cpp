@@ -410,7 +410,7 @@ void check_assignment(Checking& c, Statement*& s) {
     if (s->op == Word::attempt_assign) return check_attempt(c, *s);
     if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
-    const bool is_of_target = s->target->kind == E::deref;
+    const bool is_of_target = s->target->kind == E::deref, begins = c.beginnings.contains(s);
     const Type* type = check(c, s->target);
     s->target = keeper_of_pointer(s->target);
     if (type) type = s->target->type;
@@ -426,8 +426,8 @@ void check_assignment(Checking& c, Statement*& s) {
             c, s->place, s->target,
             make_binary(c, s->place, s->place, operator_of(s->op), s->target, s->value));
     check(c, s->value, type);
-    if (s->value->kind == E::list || !type || !check_target(c, *s->target) || !s->value->type)
-        return;
+    const bool is_told = s->value->kind == E::list || !type;
+    if (is_told || (!begins && !check_target(c, *s->target)) || !s->value->type) return;
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     if (type->kind == Kind::block && s->op == Word::assign && is_given_whole(c, s->value, *type))
         return begin_both(c, s);

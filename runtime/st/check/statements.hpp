@@ -27,6 +27,10 @@ bool runs_with_pins(Checking& c, Statement*& s);
 /// hung in its place. False if it means itself, and is not checked.
 bool rewrite(Checking& c, Statement*& s);
 
+/// `instance.ENO` of a variable of the routine at hand: what EN was in its last call that had one,
+/// and at first TRUE. Null: it is no such variable.
+Variable* enable_flag(Checking& c, const Expression& instance);
+
 /// Siemens' ENO, a flag of each call that begins as TRUE: a caller may take it.
 Variable& eno_of(Checking& c, Routine& routine);
 

@@ -171,10 +171,13 @@ void become_named_values(Type& type, const Type& base) {
     type.base = &base;
     type.has_numbers = type.is_unchecked = false;
     type.has_named_values = true;
-    type.initial.integer = type.numbers.front();
+    if (type.is_real())
+        type.initial.real = type.reals.front();
+    else
+        type.initial.integer = type.numbers.front();
 }
 
-/// `LTIME (short := LT#3s)` of SIMATIC AX.
+/// `LTIME (short := LT#3s)`, `LREAL (home := 0.0, far := 100.0)` of SIMATIC AX.
 const Type* resolve_named_values(Checking& c, const TypeText& text, const Type& base) {
     Type& type = c.make_type(Kind::enumeration, "enumeration");
     type.slots = 1;
@@ -187,7 +190,10 @@ const Type* resolve_named_values(Checking& c, const TypeText& text, const Type& 
             return c.fail(code::not_a_constant, given->place, "a named value is a constant");
         if (!is_new_name(c, value.name, names)) continue;
         type.values.emplace_back(value.name.text);
-        type.numbers.push_back(static_cast<std::int64_t>(given->constant.integer));
+        if (base.is_real())
+            type.reals.push_back(given->constant.real);
+        else
+            type.numbers.push_back(static_cast<std::int64_t>(given->constant.integer));
     }
     become_named_values(type, base.plain());
     return &type;
@@ -206,13 +212,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
     const Type* base = has_base ? resolve_name(c, text.name) : &int_type;
     const bool has_none = text.values.empty() && base && base->is_instance();  // `edge : R_TRIG()`
     if (!base || base->kind == Kind::block || has_none) return base;
-    if (names_values(text, *base)) {
-        if (base->is_real())
-            return c.fail(code::not_supported, text.place,
-                          fmt::format("named values of {} are not supported", base->name),
-                          "declare constants: VAR_GLOBAL CONSTANT name : LREAL := 1.5; END_VAR");
-        return resolve_named_values(c, text, *base);
-    }
+    if (names_values(text, *base)) return resolve_named_values(c, text, *base);
     if (base->kind != Kind::integer && base->kind != Kind::bits)
         return c.fail(code::not_supported, text.place, "arguments behind a type are not supported",
                       "write values behind ':=': (name := value)");

@@ -64,6 +64,11 @@ struct Scientific {
 
 template <class T>
 void write_exponent(std::byte* to, T value) {
+    if (!std::isfinite(value)) {
+        const std::string_view none = std::isnan(value) ? "NaN" : "INF";
+        std::ranges::copy(none, reinterpret_cast<char*>(to + 8));
+        return set_word(to, 0, none.size());
+    }
     const Scientific parts(value, std::is_same_v<T, float> ? 7 : 14);
     char* const first = reinterpret_cast<char*>(to + 8);
     char* out = first;
@@ -180,8 +185,9 @@ void write_of_codesys(std::byte* to, T value) {
 template <class T>
 void write_real(std::byte* to, T value, RealForm form) {
     if (form == RealForm::of_codesys) return write_of_codesys(to, value);
+    if (form == RealForm::exponent) return write_exponent(to, value);
     if (form == RealForm::shortest || !std::isfinite(value)) return write_number(to, value, false);
-    form == RealForm::rounded ? write_rounded(to, value) : write_exponent(to, value);
+    write_rounded(to, value);
 }
 
 namespace {

@@ -115,7 +115,10 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
-    const Slot a = wide_value_before(w, left, right), b = wide_value(w, right);
+    // SHL of a number beside one of its own type has the bits of that: `SHL(year, 14) = 0`.
+    const Slot a =
+        is_standard(left, "shl") ? value_before(w, left, right) : wide_value_before(w, left, right);
+    const Slot b = is_standard(right, "shl") ? value(w, right) : wide_value(w, right);
     const Type& type = right.type->is_unsigned_64() ? *right.type : *left.type;
     if (!is_false_of_nan(e)) return compare(w, e.op, type, a, b, wanted);
     const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);

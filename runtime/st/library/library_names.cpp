@@ -50,6 +50,11 @@ bool is_everyday(std::string_view name) {
     return name == "RUN" || name == "TEST";
 }
 
+/// Whole numbers, but LREALs in TwinCAT's library.
+bool is_of_twincat_alone(std::string_view name) {
+    return same_name(name, "floor") || same_name(name, "ceil");
+}
+
 /// B&R's of axes.
 bool is_of_mapp(std::string_view library) {
     return library.starts_with("Mc") || library.starts_with("Mp");
@@ -202,11 +207,12 @@ void LibraryNames::note(const Token& name) {
         return;
     }
     const auto it = index_.by_name.find(name.text);
-    if (it == index_.by_name.end()) return;
+    const bool is_twincat = &name.place.dialect() == &twincat;
+    if (it == index_.by_name.end() || (is_of_twincat_alone(it->first) && !is_twincat)) return;
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
-    if (&name.place.dialect() == &twincat) of_twincat_.insert(it->first);
+    if (is_twincat) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
     const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
     if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);

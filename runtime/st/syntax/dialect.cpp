@@ -96,7 +96,7 @@ const Dialect twincat = [] {
 const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::matiec;
-    made.addresses_of_sizes_are_apart = true;
+    made.addresses_count = AddressCount::sizes_apart;
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
     made.real_literals_are_lreal = false;

@@ -76,7 +76,6 @@ struct Dialect {
     bool ignores_excess_values = false;      ///< of an array that has fewer elements
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
     AddressCount addresses_count = AddressCount::bytes;
-    bool addresses_of_sizes_are_apart = false;  ///< %QW0 has no bit of %QX0.0, as in MatIEC
     TextOfReal text_of_real = TextOfReal::shortest;
     std::uint8_t most_aligned = 1;         ///< bytes that a member of a structure begins at
     std::uint32_t text_length = 254;       ///< characters of a STRING without a length

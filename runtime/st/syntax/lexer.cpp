@@ -231,6 +231,11 @@ bool skip_section(TextCursor& in, std::string_view word) {
     return end != in.text.npos;
 }
 
+/// CoDeSys 2.3 exports `FUNCTIONBLOCK TMAX`, too.
+bool is_function_block(const TextCursor& in, std::string_view text) {
+    return in.new_line && in.dialect.is_loose && same_name(text, "functionblock");
+}
+
 void read_word(TextCursor& in) {
     in.skip_name();
     const std::string_view text = in.text.substr(in.start, in.at - in.start);
@@ -239,7 +244,8 @@ void read_word(TextCursor& in) {
     if (const auto word = read_letter_assign(in, text)) return ++in.at, void(in.add(*word));
     if (!after_dot && is_classic_bit(in, text)) return in.at += 2, void(in.add(Word::direct));
     if (skip_section(in, text)) return;
-    const std::optional<Word> word = word_of(text);
+    const std::optional<Word> word =
+        is_function_block(in, text) ? Word::function_block_ : word_of(text);
     if (in.new_line && is_title(in.text, in.at, text))
         return in.add(Word::name), in.skip_to_end_of_line();
     const bool is_variable = word == Word::region_ && (!in.new_line || is_declared_or_assigned(in));

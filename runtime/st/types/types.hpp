@@ -80,6 +80,7 @@ struct Type {
     bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
+    std::vector<double> reals = {};            ///< instead of these, of named values of a REAL
     std::vector<Place> places = {};            ///< where these are declared; of the catalogue none
     bool counted = true;                       ///< those are 0, 1, 2, ...
     bool texts_are_names = false;              ///< TO_STRING gives a value's name, not its number

@@ -22,6 +22,11 @@ void add_variable(Offer& to, const st::Variable& v, Offered kind, const std::str
            behind.empty() ? behind : std::string(v.text) + behind);
 }
 
+/// `FB_init.begins`, which the checker adds, is no name of a method.
+bool is_written(std::string_view name) {
+    return name.find('.') == name.npos;
+}
+
 /// Names with dots, indices left out, that end before a byte: `a.b[i].c` as a, b, c.
 std::vector<std::string> chain_before(const std::string& text, std::size_t end) {
     std::vector<std::string> names;
@@ -135,7 +140,7 @@ void Completion::add_members(const st::Type& type, Offer& to) const {
                 add_variable(to, *v, Offered::field);
         for (const auto* known : {&type.routine->methods, &type.routine->getters})
             for (const auto& [name, method] : *known)
-                to.add(name, Offered::method, signature_of(*method));
+                if (is_written(name)) to.add(name, Offered::method, signature_of(*method));
     }
     for (const st::Variable* member : type.members)
         if (type.kind != st::Type::Kind::standard || member->section != st::Section::local)
@@ -150,7 +155,7 @@ void Completion::add_names(Offer& to) const {
     for (const st::Routine* r = routine; r; r = r->owner) {
         for (const st::Variable* v : st::all_variables(*r)) add_variable(to, *v, Offered::variable);
         for (const auto& [name, method] : r->methods)
-            to.add(name, Offered::method, signature_of(*method));
+            if (is_written(name)) to.add(name, Offered::method, signature_of(*method));
     }
     for (const st::NameUse& use : meaning.uses)
         if (use.variable && use.variable->section == st::Section::global)
