@@ -122,7 +122,7 @@ void read_program(st::Cursor& p, const std::string& resource, const std::string&
     read_arguments(p, program);
     ProjectTask& to = task_of(tasks, has_task ? &task : nullptr, resource);
     const auto has_programs = [](const ProjectTask& one) { return !one.programs.empty(); };
-    if (&instance.place.dialect() == &st::matiec && to.programs.empty())
+    if (instance.place.dialect().programs_run_as_written && to.programs.empty())
         to.priority = std::ranges::count_if(tasks, has_programs);
     to.programs.push_back(std::move(program));
 }
