@@ -69,7 +69,7 @@ class Network:
             return "".join(f'<variable name="{n}"><type>{kinds.get(k) or f"""<derived name="{k}"/>"""}</type></variable>' for n, k in of)
         outside = variables([(n, "BOOL") for n in BOOLS] + [(n, "INT") for n in NUMBERS])
         elements = self.elements[:]
-        if language != "IL":
+        if language == "LD":
             self.draw.shuffle(elements)
         return (f'<pou name="{self.name}" pouType="program"><interface><externalVars>{outside}</externalVars>'
                 f'<localVars>{variables(self.declared)}</localVars></interface><body><{language}>'
@@ -214,83 +214,98 @@ BLOCKS = {  # name: inputs, outputs
 
 
 def diagram(draw, name):
-    """Boxes and variables with executionOrderId, as in Beremiz: what comes from a later one is the value of the last scan."""
+    """Boxes and variables, of which some have an executionOrderId, as in Beremiz. A box with one takes what comes from a later box as it was in the
+    last scan; for all else that box is evaluated first."""
     net = Network(draw, name)
-    kinds = []
-    for _ in range(draw.randint(2, 9)):
-        kinds.append(draw.choice(list(FUNCTIONS) * 2 + list(BLOCKS) * 3 + ["out"] * 12))
-    kinds.append("out")
-    plan = []  # (kind, number, result type, text of the result by pin)
-    for kind in kinds:
+    kinds = [draw.choice(list(FUNCTIONS) * 2 + list(BLOCKS) * 3 + ["out"] * 12) for _ in range(draw.randint(2, 9))] + ["out"]
+    plan = []
+    for kind, number in zip(kinds, draw.sample(range(1, 40), len(kinds))):
+        entry = {"kind": kind, "order": number if draw.random() < 0.65 else 0, "outputs": {}}
         if kind in FUNCTIONS:
-            plan.append((kind, {"OUT": (FUNCTIONS[kind][1], net.own(FUNCTIONS[kind][1]))}, draw.random() < 0.2))
+            entry["outputs"]["OUT"] = (FUNCTIONS[kind][1], net.own(FUNCTIONS[kind][1]))
+            if draw.random() < 0.25:
+                entry["outputs"]["ENO"] = ("BOOL", net.own("BOOL"))
         elif kind in BLOCKS:
-            instance = net.instance(kind)
-            plan.append((kind, {pin: (of, f"{instance}.{pin}") for pin, of in BLOCKS[kind][1]}, instance))
-        else:
-            plan.append((kind, {}))
+            entry["instance"] = net.instance(kind)
+            entry["outputs"] = {pin: (of, f"{entry['instance']}.{pin}") for pin, of in BLOCKS[kind][1]}
+        plan.append(entry)
     rest = []  # variables that boxes take
 
-    def take(of, turn, negatable=True, is_typed=False):
-        """A line, its attributes, and the same as text; `is_typed`: from a variable, which says the type."""
-        found = [(i, pin, text) for i, entry in enumerate(plan) for pin, (kind, text) in entry[1].items()
-                 if kind == of and not (plan[turn][0] == "out" and entry[2] is True)]  # a box with EN may leave a variable as it is
-        earlier = [f for f in found if f[0] < turn]
-        later = [f for f in found if f[0] >= turn]
-        if earlier and not is_typed and draw.random() < 0.6:
-            i, pin, text = draw.choice(earlier)
-        elif later and not is_typed and draw.random() < 0.3:
-            i, pin, text = draw.choice(later)
+    def line(of, negatable=True, is_typed=False):
+        """Where it comes from, its attributes, and the same as text; `is_typed`: from a variable, which says the type."""
+        found = [(i, pin, text) for i, entry in enumerate(plan) for pin, (kind, text) in entry["outputs"].items() if kind == of]
+        source, trigger = None, None
+        if found and not is_typed and draw.random() < 0.7:
+            source, pin_name, text = draw.choice(found)
+            ends = [(source + 1, pin_name)]
         else:
             text = {"BOOL": lambda: draw.choice(BOOLS + ["b0", "b1", "b2"]), "TIME": lambda: "T#30ms",
                     "INT": lambda: draw.choice(NUMBERS + ["v0", "v1", "v2"] + (["2"] if negatable and not is_typed else []))}[of]()
+            ends = [(100 + len(rest), "")]
             rest.append(f'<inVariable localId="{100 + len(rest)}"><position x="0" y="0"/><expression>{text}</expression></inVariable>')
-            i, pin = 100 + len(rest) - 2, ""
         more = {}
         if of == "BOOL" and draw.random() < 0.2:
             more, text = {"negated": "true"}, f"NOT {text}"
         if of == "BOOL" and negatable and draw.random() < 0.1:
-            trigger = net.own("R_TRIG")
-            net.statements.append(f"{trigger}(CLK := {text});")
-            more["edge"], text = "rising", f"{trigger}.Q"
-        return [(i + 1, pin)], more, text
+            more["edge"], trigger = "rising", net.own("R_TRIG")
+        return {"ends": ends, "more": more, "source": source, "text": text, "trigger": trigger}
 
-    for turn, entry in enumerate(plan):
-        kind = entry[0]
-        if kind in FUNCTIONS:
-            types, result, form = FUNCTIONS[kind]
-            pins, texts = "", []
-            has_en = entry[2]
-            if has_en:
-                ends, more, text = take("BOOL", turn, False)
-                pins += pin("EN", ends, **more)
-                enabled = text
-            for i, of in enumerate(types):
-                ends, more, text = take(of, turn, True, of == "INT" and i == len(types) - 1)
-                pins += pin(f"IN{i + 1}", ends, **more)
-                texts.append(text)
-            target = entry[1]["OUT"][1]
-            statement = f"{target} := {form.format(*(f'({t})' for t in texts))};"
-            nothing = "FALSE" if FUNCTIONS[kind][1] == "BOOL" else "0"
-            net.statements.append(f"IF {enabled} THEN {statement} ELSE {target} := {nothing}; END_IF" if has_en else statement)
-            net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*(["ENO"] if has_en else []), "OUT"), 0,
-                        typeName=kind, executionOrderId=turn + 1)
-        elif kind in BLOCKS:
-            pins, texts = "", []
-            for pin_name, of in BLOCKS[kind][0]:
-                ends, more, text = take(of, turn)
-                pins += pin(pin_name, ends, **more)
-                texts.append(f"{pin_name} := {text}")
-            net.statements.append(f"{entry[2]}({', '.join(texts)});")
-            net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*(p for p, _ in BLOCKS[kind][1])), 0,
-                        typeName=kind, instanceName=entry[2], executionOrderId=turn + 1)
-        else:
+    for entry in plan:
+        kind, order = entry["kind"], {"executionOrderId": entry["order"]} if entry["order"] else {}
+        if kind == "out":
             of = draw.choice(["BOOL", "INT"])
-            target = draw.choice(["b0", "b1", "b2"] if of == "BOOL" else ["v0", "v1", "v2"])
-            ends, more, text = take(of, turn)
-            net.statements.append(f"{target} := {text};")
-            net.element("outVariable", point(ends) + f"<expression>{target}</expression>", 0, executionOrderId=turn + 1, **more)
-    net.elements += rest
+            entry["target"] = draw.choice(["b0", "b1", "b2"] if of == "BOOL" else ["v0", "v1", "v2"])
+            taken = line(of)
+            entry["pins"] = [("", taken)]
+            net.element("outVariable", point(taken["ends"]) + f"<expression>{entry['target']}</expression>", 0, **order, **taken["more"])
+            continue
+        if kind in FUNCTIONS:
+            types = FUNCTIONS[kind][0]
+            entry["pins"] = [("EN", line("BOOL", False))] if "ENO" in entry["outputs"] else []
+            entry["pins"] += [(f"IN{i + 1}", line(of, True, of == "INT" and i == len(types) - 1)) for i, of in enumerate(types)]
+        else:
+            entry["pins"] = [(pin_name, line(of)) for pin_name, of in BLOCKS[kind][0]]
+            order["instanceName"] = entry["instance"]
+        pins = "".join(pin(pin_name, taken["ends"], **taken["more"]) for pin_name, taken in entry["pins"])
+        net.element("block", f"<inputVariables>{pins}</inputVariables>" + outputs(*reversed(entry["outputs"])), 0, typeName=kind, **order)
+    in_file = list(range(len(plan)))
+    draw.shuffle(in_file)
+    net.elements = [net.elements[i] for i in in_file] + rest
+    evaluated = set()
+
+    def value(taker, taken):
+        source = taken["source"]
+        if source is not None and not (taker["kind"] != "out" and taker["order"]):
+            evaluate(source)
+        if not taken["trigger"]:
+            return taken["text"]
+        net.statements.append(f"{taken['trigger']}(CLK := {taken['text']});")
+        return f"{taken['trigger']}.Q"
+
+    def evaluate(i):
+        if i in evaluated:
+            return
+        evaluated.add(i)
+        entry = plan[i]
+        kind = entry["kind"]
+        texts = [value(entry, taken) for _, taken in entry["pins"]]
+        if kind in BLOCKS:
+            inside = ", ".join(f"{pin_name} := {text}" for (pin_name, _), text in zip(entry["pins"], texts))
+            net.statements.append(f"{entry['instance']}({inside});")
+            return
+        if kind == "out":
+            source = entry["pins"][0][1]["source"]
+            enabled = plan[source]["outputs"].get("ENO") if source is not None else None
+            statement = f"{entry['target']} := {texts[0]};"
+            net.statements.append(f"IF {enabled[1]} THEN {statement} END_IF" if enabled else statement)
+            return
+        (of, target), enabled = entry["outputs"]["OUT"], entry["outputs"].get("ENO")
+        statement = f"{target} := {FUNCTIONS[kind][2].format(*(f'({text})' for text in (texts[1:] if enabled else texts)))};"
+        net.statements.append(f"{enabled[1]} := {texts[0]}; IF {enabled[1]} THEN {statement} ELSE {target} := {'FALSE' if of == 'BOOL' else '0'}; END_IF"
+                              if enabled else statement)
+
+    for i in sorted(in_file, key=lambda i: (not plan[i]["order"], plan[i]["order"] or (plan[i]["kind"] != "out"))):
+        evaluate(i)
     return net
 
 

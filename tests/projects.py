@@ -461,6 +461,42 @@ def check_tasks_of_plcopen():
     run("run", "--quiet", "lost.yaml")
 
 
+def check_order_of_programs():
+    """What MatIEC calls in one scan stands in the order of the RESOURCE, or of the tasks of a drawn project, not of PRIORITY."""
+    bodies = {name: f"seen := g; g := {number};" for number, name in enumerate(("First", "Second"), 1)}
+    text = "".join(f"PROGRAM {name}\nVAR_EXTERNAL g : INT; END_VAR\nVAR seen : INT; END_VAR\n{body}\nEND_PROGRAM\n" for name, body in bodies.items())
+    write("ordered.st", text + "CONFIGURATION c\n  VAR_GLOBAL g : INT; END_VAR\n  RESOURCE r ON PLC\n    TASK quick(INTERVAL := T#20ms, PRIORITY := 0);\n"
+          "    TASK slow(INTERVAL := T#40ms, PRIORITY := 5);\n    PROGRAM i1 WITH slow : First;\n    PROGRAM i2 WITH quick : Second;\n"
+          "  END_RESOURCE\nEND_CONFIGURATION\n")
+    variable = '<variable name="{}"><type><INT/></type></variable>'
+    pous = "".join(f'<pou name="{name}" pouType="program"><interface><externalVars>{variable.format("g")}</externalVars>'
+                   f'<localVars>{variable.format("seen")}</localVars></interface>{st(body)}</pou>' for name, body in bodies.items())
+    tasks = "".join(f'<task name="{name}" priority="{priority}" interval="T#{every}ms"><pouInstance name="i{name}" typeName="{of}"/></task>'
+                    for name, priority, every, of in (("slow", 5, 40, "First"), ("quick", 0, 20, "Second")))
+    write("ordered.xml", '<?xml version="1.0"?>\n<project xmlns="http://www.plcopen.org/xml/tc6_0201"><fileHeader productName="Beremiz"/><types><dataTypes/>'
+          f'<pous>{pous}</pous></types><instances><configurations><configuration name="c"><resource name="r">{tasks}</resource><globalVars>'
+          f'{variable.format("g")}</globalVars></configuration></configurations></instances></project>\n')
+    for number, source in enumerate(("ordered.st", "ordered.xml")):
+        run("new", f"ordered{number}", "--from", source)
+        text = (work / f"ordered{number}.yaml").read_text()
+        write(f"ordered{number}.yaml", text + "expect: [{at: 10 ms, First.seen: 0}, {at: 10 ms, Second.seen: 1}, {at: 50 ms, First.seen: 2}, {at: end, globals.g: 2}]\n")
+        run("run", "--quiet", f"ordered{number}.yaml")
+
+
+def check_coil_in_mid_rung():
+    """What Beremiz makes of several lines to a coil that more stands behind is not what is drawn."""
+    def element(tag, number, lines, variable):
+        ends = "".join(f'<connection refLocalId="{i}"/>' for i in lines)
+        return (f'<{tag} localId="{number}"><position x="{number}" y="0"/><connectionPointIn>{ends}</connectionPointIn>'
+                f"<variable>{variable}</variable></{tag}>\n")
+    rung = '<leftPowerRail localId="0"/>\n' + element("contact", 1, [0], "a") + element("contact", 2, [0], "b")
+    for lines, count in (([1, 2], 1), ([1], 0)):
+        whole = drawn(rung + element("coil", 3, lines, "c") + element("coil", 4, [3], "d"), variables="a b c d")
+        said = run("check", write("middle.xml", whole.replace("<types>", '<fileHeader productName="Beremiz"/><types>')))
+        assert said.count("Beremiz and OpenPLC ask for all of them there (network 1, coil 3)") == count, said
+        assert "Beremiz" not in run("check", write("middle.xml", whole)), "CODESYS does as it is drawn"
+
+
 def check_programs_without_tasks():
     """Where no task is said, what another PROGRAM calls runs there alone."""
     write("calling.st", "PROGRAM Sub\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_PROGRAM\nPROGRAM PLC_PRG\nVAR seen : INT; END_VAR\nSub();\n"
@@ -2064,6 +2100,8 @@ with tempfile.TemporaryDirectory() as temporary:
     check_unread_bodies()
     check_configured_programs()
     check_texts_of_any_name()
+    check_order_of_programs()
+    check_coil_in_mid_rung()
     check_programs_without_tasks()
     check_tasks_of_plcopen()
     check_chart_flags()

@@ -104,22 +104,27 @@ ProjectTask& task_of(std::vector<ProjectTask>& tasks, const Token* name,
                                           .counts_always = true});
 }
 
-/// `PROGRAM main WITH slow : Main(limit := 5);`
+/// `PROGRAM main WITH slow : Main(limit := 5);`. MatIEC calls programs that are due at once as they
+/// stand in the RESOURCE, and does not look at PRIORITY.
 void read_program(st::Cursor& p, const std::string& resource, const std::string& configuration,
                   std::vector<ProjectTask>& tasks) {
     p.take();
     while (p.is(Word::retain_) || p.is(Word::non_retain_)) p.take();
-    const std::string instance(p.take().text);
+    const Token instance = p.take();
     const bool has_task = p.says("with");
     if (has_task) p.take();
     const Token task = has_task ? p.take() : p.here();
     if (!p.accept(Word::colon)) return;
     TaskProgram program{name_of(p.take())};
-    program.instance = instance;
+    program.instance = instance.text;
     const std::string& around = resource.empty() ? configuration : resource;
-    program.path = around.empty() ? instance : around + "." + instance;
+    program.path = (around.empty() ? "" : around + ".") + program.instance;
     read_arguments(p, program);
-    task_of(tasks, has_task ? &task : nullptr, resource).programs.push_back(std::move(program));
+    ProjectTask& to = task_of(tasks, has_task ? &task : nullptr, resource);
+    const auto has_programs = [](const ProjectTask& one) { return !one.programs.empty(); };
+    if (instance.place.dialect().programs_run_as_written && to.programs.empty())
+        to.priority = std::ranges::count_if(tasks, has_programs);
+    to.programs.push_back(std::move(program));
 }
 
 /// A task that no TASK declares would never be due.

@@ -127,6 +127,8 @@ class PlcopenProject {
         ProjectTask made{.name = {file_.plain(task.attribute("name")),
                                   file_.mark(file_.part(task.attribute("name")))}};
         std::from_chars(priority.data(), priority.data() + priority.size(), made.priority);
+        if (is_of_matiec_ && read_as_ == ".matiec")  // which calls programs as they stand there
+            made.priority = std::ssize(to_.project.tasks);
         made.every = interval_of(file_.plain(task.attribute("interval")));
         read_settings(task, made);
         const pugi::xml_attribute single = task.attribute("single");

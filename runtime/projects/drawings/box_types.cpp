@@ -40,6 +40,7 @@ std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) 
     if (from.kind == Drawn::contact || from.kind == Drawn::left_rail) return "BOOL";
     if (from.kind != Drawn::block)
         return context_.types.of_expression(file_.plain(from.node.child("expression")));
+    if (st::same_name(line.pin, "ENO")) return "BOOL";
     const std::string instance = attribute(from, "instanceName");
     return instance.empty() ? type_of_result(line.from, seen)
                             : context_.types.of_output(instance, line.pin);

@@ -74,11 +74,14 @@ const Pin* NetworkText::find_output(const Element& box, std::string_view name) c
     return found == box.outputs.end() ? nullptr : &*found;
 }
 
-/// A function is evaluated where its result is taken, unless its turn is said.
+/// A function is evaluated where its result is taken, unless its turn is said, or the result of the
+/// last scan was taken.
 bool NetworkText::waits_for_use(std::size_t i) const {
     const Element& box = drawing_.elements[i];
     const bool is_function = attribute(box, "instanceName").empty() && call_type(box) != "execute";
-    return is_function && box.order <= 0 && !states_[i].uses.empty();
+    const State& state = states_[i];
+    const bool is_late = !state.loop.empty() || !state.enabled.is_empty();
+    return is_function && box.order <= 0 && !state.uses.empty() && !is_late;
 }
 
 void NetworkText::evaluate_box(std::size_t i) {
@@ -86,12 +89,15 @@ void NetworkText::evaluate_box(std::size_t i) {
     State& state = states_[i];
     if (state.is_done || state.is_active) return;
     state.is_active = true;
+    const std::int64_t turn = turn_;
+    if (context_.is_of_matiec) turn_ = box.order;
     if (call_type(box) == "execute")
         execute(box, state);
     else if (!attribute(box, "instanceName").empty())
         call_block(box, state);
     else
         call_function(i);
+    turn_ = turn;
     state.is_active = false;
     state.is_done = true;
 }
@@ -175,7 +181,9 @@ Value NetworkText::enabled_of(const Element& box, State& state) {
     const bool is_kept =
         context_.is_of_matiec || (eno != box.outputs.end() && is_used(state, *eno));
     const Mark place = place_of(box);
-    if (is_kept && !enabled.is_empty() && !enabled.is_always)
+    if (!state.enabled.is_empty())
+        enabled = kept_in(std::string(state.enabled.text.text()), enabled, place);
+    else if (is_kept && !enabled.is_empty() && !enabled.is_always)
         enabled = kept_in(context_.variables.make("_wire", "BOOL"), enabled, place);
     state.enabled = enabled;
     return enabled;
@@ -419,6 +427,18 @@ void NetworkText::write_guarded(const Value& enabled, const Value& target, const
     now_.write(enabled.is_empty() ? "\n" : " END_IF\n", place);
 }
 
+/// What a box that is evaluated later has at ENO. Empty: it has no EN.
+Value NetworkText::eno_of_last_scan(std::size_t i) {
+    const Element& box = drawing_.elements[i];
+    State& state = states_[i];
+    const auto en = std::ranges::find_if(box.inputs, is_en);
+    if (en == box.inputs.end() || en->lines.empty()) return {};
+    if (!attribute(box, "instanceName").empty()) return member_of(box, "ENO");
+    if (state.enabled.is_empty())
+        state.enabled = words(context_.variables.make("_wire", "BOOL"), place_of(box), "BOOL");
+    return state.enabled;
+}
+
 /// What a line takes from a box.
 Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
     const Element& box = drawing_.elements[i];
@@ -438,7 +458,8 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
     if (!state.is_active && !state.is_done && !waits) evaluate_box(i);
     Value value;
     if (is_eno(*pin)) {
-        value = state.enabled;
+        const bool is_late = waits || state.is_active;
+        value = is_late ? eno_of_last_scan(i) : state.enabled;
         if (value.is_empty()) value = words("TRUE", place, "BOOL"), value.is_always = true;
     } else if (is_block) {
         value = member_of(box, pin->name);

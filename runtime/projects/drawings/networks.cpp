@@ -81,7 +81,7 @@ std::vector<std::string> NetworkText::labels() const {
 
 Excerpts NetworkText::statements() {
     for (const std::size_t i : drawing_.order) {
-        turn_ = drawing_.elements[i].order;
+        if (!context_.is_of_matiec) turn_ = drawing_.elements[i].order;
         evaluate(i);
     }
     return jumps_.finish(std::exchange(now_, {}));
@@ -283,9 +283,9 @@ Value NetworkText::value_of_loop(std::size_t i, const std::string& type) {
 }
 
 /// Its turn comes behind that of the element which is evaluated, so it has the value of the last
-/// scan.
+/// scan. In MatIEC's editors a box with a number has no other evaluated before it.
 bool NetworkText::comes_later(const Element& element) const {
-    return turn_ > 0 && element.order > turn_;
+    return turn_ > 0 && (context_.is_of_matiec || element.order > turn_);
 }
 
 /// It is set or reset by what comes.
@@ -358,6 +358,11 @@ void NetworkText::assign(std::size_t i) {
     if (value.is_empty() && !element.inputs.empty())
         value = value_of(element, element.inputs.front());
     states_[i].is_active = false;
+    if (is_passed && context_.is_of_matiec && element.inputs.front().lines.size() > 1)
+        context_.out.warn(code::not_supported, place,
+                          "what is behind this coil is reached by any line that leads to it here; "
+                          "Beremiz and OpenPLC ask for all of them there",
+                          "draw what is behind it at those lines, too");
     if (states_[i].is_written) return;
     if (value.is_empty())
         return context_.out.warn(code::not_supported, place,

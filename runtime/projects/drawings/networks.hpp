@@ -125,6 +125,7 @@ class NetworkText {
                        const Mark& place, std::string_view otherwise = {});
     Value enabled_of(const Element& box, State& state);
     std::string variable_of_eno(const Element& box, State& state);
+    Value eno_of_last_scan(std::size_t i);
     Value value_of_box(std::size_t i, const std::string& name);
     Value instance_of(const Element& box);
     Value member_of(const Element& box, const std::string& pin);
@@ -150,7 +151,8 @@ class NetworkText {
     Jumps jumps_;
     std::vector<State> states_;
     Excerpts now_;           ///< statements since the last label or jump
-    std::int64_t turn_ = 0;  ///< `executionOrderId` of the element whose turn it is
+    std::int64_t turn_ = 0;  ///< `executionOrderId` of the element whose turn it is; in MatIEC's
+                             ///< form of the box whose inputs are evaluated
     int depth_ = 0;
 };
 

@@ -121,15 +121,21 @@ void write_times(ChartWriter& w, const Chart& chart) {
     }
 }
 
-/// By their priorities, then as they are written.
-std::vector<const ChartTransition*> in_order(const Chart& chart) {
+/// By their priorities, then as they are written. MatIEC puts one that has a priority behind those
+/// written before it that have none.
+std::vector<const ChartTransition*> in_order(const ChartWriter& w, const Chart& chart) {
     std::vector<const ChartTransition*> order;
-    for (const ChartTransition& transition : chart.transitions) order.push_back(&transition);
-    std::ranges::stable_sort(order, {}, [](const ChartTransition* t) {
+    const auto number_of = [&](const ChartTransition* t) {
         const auto number = t->priority.word == Word::integer ? read_integer(t->priority.text)
                                                               : std::optional<Wide>();
-        return number.value_or(Wide{1} << 65);
-    });
+        return number.value_or(w.is_matiec() ? 0 : Wide{1} << 65);
+    };
+    for (const ChartTransition& t : chart.transitions) {
+        const auto place = std::ranges::find_if(order, [&](const ChartTransition* other) {
+            return t.priority.word == Word::integer && number_of(other) > number_of(&t);
+        });
+        order.insert(place, &t);
+    }
     return order;
 }
 
@@ -152,7 +158,7 @@ Block joined(Block first, const Block& second) {
 
 /// CODESYS' `_x` of each step: whether it is active in the next scan.
 void write_next(ChartWriter& w, const Chart& chart) {
-    const auto order = in_order(chart);
+    const auto order = in_order(w, chart);
     for (const bool enters : {false, true})
         for (std::size_t i = 0; i < order.size(); ++i) {
             Block changed;
@@ -165,7 +171,7 @@ void write_next(ChartWriter& w, const Chart& chart) {
 
 /// All conditions; given back what they change: what is left, then what is entered.
 Block write_conditions(ChartWriter& w, const Chart& chart) {
-    const auto order = in_order(chart);
+    const auto order = in_order(w, chart);
     Block leaving, entering;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const ChartTransition& t = *order[i];

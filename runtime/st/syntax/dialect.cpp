@@ -110,6 +110,7 @@ const Dialect matiec = [] {
     made.texts_end_at_zero = false;
     made.times_count_ms = made.dates_count_seconds = made.texts_are_windows_1252 = false;
     made.most_aligned = iec.most_aligned;
+    made.programs_run_as_written = true;
     made.text_length = 126;
     return made;
 }();

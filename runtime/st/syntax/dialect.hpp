@@ -78,6 +78,7 @@ struct Dialect {
     AddressCount addresses_count = AddressCount::bytes;
     TextOfReal text_of_real = TextOfReal::shortest;
     std::uint8_t most_aligned = 1;         ///< bytes that a member of a structure begins at
+    bool programs_run_as_written = false;  ///< those due at once, in spite of PRIORITY
     std::uint32_t text_length = 254;       ///< characters of a STRING without a length
     bool long_numbers_count_time = false;  ///< TIME_TO_LINT(T#1s) is 1000, else in ns
     std::uint8_t reckons_in = 0;  ///< bits, whole numbers that have fewer, until they are kept:
