@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/bench.hpp"
 #include "runtime/st/library/kind.hpp"
 #include "runtime/st/library/suites_state.hpp"
@@ -271,7 +272,7 @@ bool is_call_of_run(const Cursor& cursor) {
 }  // namespace
 
 bool calls_suites(const std::shared_ptr<const SourceFile>& file) {
-    if (file->text.find("RUN") == std::string::npos) return false;
+    if (lower(file->text).find("run") == std::string::npos) return false;
     Diagnostics unread;
     Cursor cursor{read_tokens(file, unread)};
     bool is_in_program = false;
