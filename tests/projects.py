@@ -1097,6 +1097,30 @@ def check_automation_studio():
     assert "Plant/Logical/Belt/Cyclic.st:3:2: error[L0904]: 'missing' is not declared" in run("check", "Plant", code=2)
 
 
+def check_programs_with_packages():
+    """A program of Automation Studio may list objects: files, and packages of files; its own functions stand in any of them."""
+    def listed(root, *objects):
+        return (f'<?xml version="1.0"?>\n<{root}>\n <Objects>\n'
+                + "".join(f'  <Object Type="{kind}"{more}>{name}</Object>\n' for kind, name, more in objects) + f" </Objects>\n</{root.split()[0]}>\n")
+    private = ' Private="true"'
+    write("Nested/Logical/Belt/IEC.prg", listed('Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"', ("File", "Main.st", ""),
+          ("File", "Belt.var", private), ("File", "Belt.fun", private), ("Package", "Steps", ' Description="x"')))
+    write("Nested/Logical/Belt/Steps/Package.pkg", listed("Package", ("File", "Go.st", ""), ("File", "Go.typ", private), ("Package", "Deep", ""), ("Package", "..\\Steps", "")))
+    write("Nested/Logical/Belt/Steps/Deep/Package.pkg", listed("Package", ("File", "Stop.st", "")))
+    write("Nested/Logical/Belt/Belt.var", "VAR\n\tn, stops : INT;\n\tstep : Step_type;\nEND_VAR\n")
+    write("Nested/Logical/Belt/Belt.fun", "FUNCTION Doubled : INT\n\tVAR_INPUT\n\t\tx : INT;\n\tEND_VAR\nEND_FUNCTION\n")
+    write("Nested/Logical/Belt/Main.st", "PROGRAM _CYCLIC\n\tgo;\n\tstop;\nEND_PROGRAM\n")
+    write("Nested/Logical/Belt/Steps/Go.typ", "TYPE\n\tStep_type : (WAIT, RUN);\nEND_TYPE\n")
+    write("Nested/Logical/Belt/Steps/Go.st", "ACTION go:\n\tn := Doubled(4);\n\tstep := RUN;\nEND_ACTION\n\nFUNCTION Doubled\n\tDoubled := 2 * x;\nEND_FUNCTION\n")
+    write("Nested/Logical/Belt/Steps/Deep/Stop.st", "ACTION stop:\n\tstops := stops + 1;\nEND_ACTION\n")
+    assert run("check", "Nested").splitlines()[0] == "ok  Nested"
+    run("new", "nested", "--from", "Nested")
+    write("nested.yaml", (work / "nested.yaml").read_text() + "expect:\n  - {at: end, Belt.n: 8}\n  - {at: end, Belt.stops: 101}\n  - {at: end, Belt.step: RUN}\n")
+    run("run", "nested.yaml", "--quiet")
+    write("Nested/Logical/Belt/Steps/Deep/Stop.st", "ACTION stop:\n\tmissing := 1;\nEND_ACTION\n")
+    assert "Steps/Deep/Stop.st:2:2: error[L0904]: 'missing' is not declared" in run("check", "Nested", code=2)
+
+
 PACKAGE = '<?xml version="1.0"?>\n<Package xmlns="http://br-automation.co.at/AS/Package">\n <Objects>\n{}\n </Objects>\n</Package>\n'
 
 
@@ -1286,6 +1310,26 @@ def check_mapp_motion():
     write("Motion/Logical/P/Main.st", "PROGRAM _CYCLIC\n\tpar.Home := 1;\n\tbasic(Axis := 1, Parameters := ADR(par), TorqueLimit := TRUE);\nEND_PROGRAM\n")
     said = run("check", "Motion")
     assert "of the library 'MpAxis' there are declarations alone, so this does nothing: MpAxisBasic" in said and "ok  Motion" in said, said
+
+
+def check_mapp_references():
+    """B&R: what blocks of mapp are to work with is a variable of the type that they refer to; a list declares each of its points and stations."""
+    kinds = {"pickregister": "MpPickRegisterType", "pickcore": "MpPickCoreType", "pickobjectlist": "MpPickObjectListType", "assembly6d": "Mc6DAssemblyType",
+             "trafficmanager": "MpTrafficManagerType", "processpoint": "McProcessPointType", "visioncomponent": "ViComponentType"}
+    objects = {"gPoint": "McProcessPointType", "S1": "MpTrafficStationType", "G1": "MpTrafficWaypointType", "P1": "MpTrafficPathType"}
+    text = "".join(f'  <Element ID="g_{kind}" Type="{kind}"/>\n' for kind in kinds)
+    text += '  <Element ID="gPoints" Type="processpointlist">\n   <Selector ID="ProcessPoint[0]"><Property ID="Name" Value="gPoint"/></Selector>\n  </Element>\n'
+    text += '  <Element ID="gObjects" Type="trafficobjectlist">\n' + "".join(
+        f'   <Selector ID="TrafficObject[1]" Value="{kind}"><Property ID="X" Value="0"/><Property ID="Name" Value="{name}"/></Selector>\n'
+        for name, kind in (("S1", "Station"), ("G1", "Waypoint"), ("P1", "Path"), ("N1", "Else"))) + "  </Element>\n"
+    write("Linked/Physical/one/cpu/mappMotion/All.pickregister", f'<?xml version="1.0"?>\n<Configuration>\n{text}</Configuration>\n')
+    named = {**{f"g_{kind}": type_ for kind, type_ in kinds.items()}, **objects}
+    write("Linked/Logical/All.typ", "TYPE\n" + "".join(f"\t{type_} : STRUCT\n\t\tcontrolif : UDINT;\n\tEND_STRUCT;\n" for type_ in sorted(set(named.values()))) + "END_TYPE\n")
+    write("Linked/Logical/P/IEC.prg", '<?xml version="1.0"?>\n<Program SubType="IEC" xmlns="http://br-automation.co.at/AS/Program"><Files>'
+          "<File>Main.st</File><File>Variables.var</File></Files></Program>\n")
+    write("Linked/Logical/P/Variables.var", "VAR\n" + "".join(f"\tto_{name} : REFERENCE TO {type_};\n" for name, type_ in named.items()) + "END_VAR\n")
+    write("Linked/Logical/P/Main.st", "PROGRAM _CYCLIC\n" + "".join(f"\tto_{name} ACCESS ADR({name});\n" for name in named) + "END_PROGRAM\n")
+    assert run("check", "Linked").splitlines()[0] == "ok  Linked"
 
 
 def check_headers():
@@ -1970,13 +2014,13 @@ def check_vendored_tcunit():
 
 
 def check_suites_of_lists():
-    """A list of globals that no program names has suites, too; what they use may be a block with VAR_GENERIC of another file."""
+    """A list of globals that no program names has suites, too; what they use may be a block with VAR_GENERIC of another file; RUN has any letters."""
     twincat("listed", "POU", "Stack", "FUNCTION_BLOCK Stack\nVAR_GENERIC CONSTANT length : INT := 5; END_VAR\nVAR_OUTPUT size : INT; END_VAR\n"
             "VAR a : ARRAY[1..length] OF INT; END_VAR", "size := UPPER_BOUND(a, 1);")
     twincat("listed", "POU", "Suite", "FUNCTION_BLOCK Suite EXTENDS TcUnit.FB_TestSuite\nVAR small : Stack<3>; large : Stack<10>; END_VAR",
             "TEST('has its size'); small(); large(); AssertEquals_INT(3, small.size, ''); AssertEquals_INT(10, large.size, ''); TEST_FINISHED();")
     twincat("listed", "GVL", "Suites", "{attribute 'qualified_only'}\nVAR_GLOBAL suite : Suite; END_VAR")
-    twincat("listed", "POU", "MAIN", "PROGRAM MAIN", "TcUnit.RUN();")
+    twincat("listed", "POU", "MAIN", "PROGRAM MAIN", "TcUnit.Run();")
     plcproj("listed/Listed.plcproj", "Listed", ["Stack.TcPOU", "Suite.TcPOU", "Suites.TcGVL", "MAIN.TcPOU"], [("TcUnit", "TcUnit")])
     said = run("test", "listed")
     assert "Suites.suite: has its size" in said and "1 of 1 passed" in said, said
@@ -2120,6 +2164,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_foreign_files()
     check_nothing()
     check_automation_studio()
+    check_programs_with_packages()
     check_packages()
     check_private_packages()
     check_projects_beside()
@@ -2129,6 +2174,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_headers()
     check_mapp()
     check_mapp_motion()
+    check_mapp_references()
     check_organization_blocks()
     check_memory_bytes()
     check_softmotion()

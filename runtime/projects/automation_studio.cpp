@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -34,16 +36,40 @@ std::string beginning_of(const fs::path& file) {
     return start;
 }
 
+struct MappType {
+    std::string_view kind, type;
+};
+
+constexpr MappType types_of_elements[] = {{"assembly", "McAssemblyType"},
+                                          {"assembly6d", "Mc6DAssemblyType"},
+                                          {"axis", "McAxisType"},
+                                          {"pickcore", "MpPickCoreType"},
+                                          {"pickobjectlist", "MpPickObjectListType"},
+                                          {"pickregister", "MpPickRegisterType"},
+                                          {"processpoint", "McProcessPointType"},
+                                          {"sector", "McSectorType"},
+                                          {"segment", "McSegmentType"},
+                                          {"trackingpath", "McTrackingPathType"},
+                                          {"trafficmanager", "MpTrafficManagerType"},
+                                          {"virtsegment", "McSegmentType"},
+                                          {"visioncomponent", "ViComponentType"}};
+
+/// What the list `processpointlist` or `trafficobjectlist` has, `<Selector
+/// ID="ProcessPoint[0]">` and `<Selector ID="TrafficObject[1]" Value="Station">`, whose property
+/// Name is the variable's.
+constexpr MappType types_in_lists[] = {{"ProcessPoint", "McProcessPointType"},
+                                       {"Path", "MpTrafficPathType"},
+                                       {"Station", "MpTrafficStationType"},
+                                       {"Waypoint", "MpTrafficWaypointType"}};
+
+std::string_view find_type(std::span<const MappType> types, std::string_view kind) {
+    const auto found = std::ranges::find(types, kind, &MappType::kind);
+    return found == types.end() ? std::string_view{} : found->type;
+}
+
 std::string_view type_of_element(std::string_view kind) {
-    if (kind == "axis") return "McAxisType";
-    if (kind == "visioncomponent") return "ViComponentType";
-    if (kind == "assembly") return "McAssemblyType";
-    if (kind == "sector") return "McSectorType";
-    if (kind == "segment" || kind == "virtsegment") return "McSegmentType";
-    if (kind == "processpoint") return "McProcessPointType";
-    if (kind == "trackingpath") return "McTrackingPathType";
-    if (kind == "pickcore") return "MpPickCoreType";
-    if (kind == "pickregister") return "MpPickRegisterType";
+    const std::string_view type = find_type(types_of_elements, kind);
+    if (!type.empty()) return type;
     return kind.starts_with("axesgroup") ? "McAxesGroupType" : "MpComIdentType";
 }
 
@@ -61,12 +87,15 @@ class IecProgram {
     IecProgram(const XmlFile& list, const Reading& to) : list_(list), to_(to) {}
 
     void read() {
-        for (const pugi::xml_node file : list_.root().child("Files").children("File")) add(file);
+        for (const pugi::xml_node file : list_.root().child("Files").children("File"))
+            add(list_.plain(file), list_, file);
+        add_objects(list_, "");
         const Mark place = list_.mark_of_tag(list_.root());
         const std::string name = folder().filename().string();
         use_packages(place);
         for (const auto& [path, mark] : types_) add_types(path, mark);
         for (const auto& [path, mark] : functions_) add_functions(path, mark);
+        add_function_bodies(place);
         Excerpts text;
         text.append(usings_);
         const char* const quote = is_one_name(name) ? "" : "\"";
@@ -105,16 +134,32 @@ class IecProgram {
         return made.string();
     }
 
-    void add(pugi::xml_node file) {
-        const std::string named = list_.plain(file);
-        const Mark mark = list_.mark_of_tag(file);
+    /// Files and packages, which have such a list themselves; `folder` is where it stands.
+    void add_objects(const XmlFile& list, const std::string& folder) {
+        for (const pugi::xml_node object : list.root().child("Objects").children("Object")) {
+            std::string named = list.plain(object);
+            if (!named.starts_with('\\')) named.insert(0, folder);
+            const std::string kind = list.plain(object.attribute("Type"));
+            if (kind == "File") add(named, list, object);
+            if (kind == "Package") add_package(named + "/", list.mark_of_tag(object));
+        }
+    }
+
+    void add_package(const std::string& folder, const Mark& mark) {
+        const auto path = to_.resolve(path_of(folder + "Package.pkg"), mark, mistakes_);
+        if (!path || !packages_.insert(*path).second) return;
+        if (const auto list = XmlFile::read(*path, mistakes_, mark)) add_objects(*list, folder);
+    }
+
+    void add(const std::string& named, const XmlFile& list, pugi::xml_node file) {
+        const Mark mark = list.mark_of_tag(file);
         const std::string ending = lower(fs::path(named).extension().string());
         if (ending == ".uam") return;  // which methods OPC UA sees
         if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
             if (!is_structured_text(named)) return refuse(mark, named, ending);
             const auto path = to_.resolve(path_of(named), mark, mistakes_);
-            const bool is_local = list_.plain(file.attribute("Private")) == "true";
+            const bool is_local = list.plain(file.attribute("Private")) == "true";
             if (!path) return;
             if (is_local && ending == ".typ")
                 types_.emplace_back(*path, mark);
@@ -197,6 +242,16 @@ class IecProgram {
         to_.project.add(text.finish(path));
     }
 
+    /// Its files say what these do, under the names that `.fun` declares.
+    void add_function_bodies(const Mark& place) {
+        if (bodies_of_functions_.is_empty()) return;
+        Excerpts text;
+        text.append(usings_);
+        text.write("\n", place);
+        text.append(bodies_of_functions_);
+        to_.project.add(text.finish(list_.file()->path, "functions"));
+    }
+
     /// `VAR CONSTANT ... END_VAR` as constants beside all.
     void add_constants(const PlacedFile& file) {
         Diagnostics unread;
@@ -224,21 +279,22 @@ class IecProgram {
             "convert it to Structured Text, or leave it out");
     }
 
-    /// Each PROGRAM and ACTION of a file.
+    /// Each PROGRAM, ACTION and FUNCTION of a file.
     void add_bodies(const PlacedFile& file) {
         Diagnostics unread;
         const st::Tokens found = st::read_tokens(file.file(), unread);
         const auto& tokens = found.tokens;
         for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
-            const bool is_program = st::same_name(tokens[i].place.text(), "program");
-            if (!is_program && !st::same_name(tokens[i].place.text(), "action")) continue;
-            const std::string_view end = is_program ? "end_program" : "end_action";
+            const std::string unit = lower(std::string(tokens[i].place.text()));
+            const bool is_program = unit == "program", is_action = unit == "action";
+            if (!is_program && !is_action && !unit.starts_with("function")) continue;
+            const std::string end = "end_" + unit;
             std::size_t last = i + 1;
             while (last < tokens.size() && !st::same_name(tokens[last].place.text(), end)) ++last;
             const std::size_t begin = tokens[i].place.begin;
             const bool is_closed = last < tokens.size();
             if (!is_program)
-                copy(actions_, file, begin,
+                copy(is_action ? actions_ : bodies_of_functions_, file, begin,
                      is_closed ? tokens[last].place.end : file.text().size());
             else
                 add_program(file, tokens[i + 1],
@@ -318,12 +374,46 @@ class IecProgram {
 
     const XmlFile& list_;
     const Reading& to_;
-    Excerpts usings_, constants_, variables_, actions_, body_;
+    Excerpts usings_, constants_, variables_, actions_, bodies_of_functions_, body_;
     std::vector<std::pair<std::string, Mark>> types_, functions_;  ///< files that declare its own
+    std::set<std::string> packages_;                               ///< lists that were read
     MadeVariables made_;
     Diagnostics mistakes_;
     bool has_start_ = false;
 };
+
+/// A global variable of what is configured, of which several configurations may tell.
+void declare(const Reading& to, const XmlFile& file, pugi::xml_node element,
+             pugi::xml_attribute name, std::string_view type) {
+    const std::string id = file.plain(name);
+    const Mark place = file.mark_of_tag(element);
+    const auto is_there = [&](const auto& other) {
+        return other->part == id && other->read_as == mapp_form;
+    };
+    if (type.empty() || !is_one_name(id) || std::ranges::any_of(to.project.sources, is_there))
+        return;
+    Excerpts text;
+    text.write("VAR_GLOBAL\n", place);
+    file.copy(text, name);
+    text.write(fmt::format(" : {};\nEND_VAR\n", type), place);
+    SourceFile made = *text.finish(file.file()->path, id);
+    made.read_as = mapp_form;
+    to.project.add(std::make_shared<const SourceFile>(std::move(made)));
+}
+
+pugi::xml_attribute name_of_part(const XmlFile& file, pugi::xml_node part) {
+    for (const pugi::xml_node property : part.children("Property"))
+        if (file.plain(property.attribute("ID")) == "Name") return property.attribute("Value");
+    return {};
+}
+
+/// Empty of what no variable stands for.
+std::string_view type_of_part(const XmlFile& file, pugi::xml_node part) {
+    const std::string id = file.plain(part.attribute("ID"));
+    const std::string kind = id.substr(0, id.find('['));
+    return find_type(types_in_lists,
+                     kind == "TrafficObject" ? file.plain(part.attribute("Value")) : kind);
+}
 
 }  // namespace
 
@@ -358,20 +448,11 @@ void read_mapp_configuration(const Reading& to, const std::string& path, const M
     const auto file = XmlFile::read(path, to.out, where);
     if (!file) return;
     for (const pugi::xml_node element : file->root().children("Element")) {
-        const std::string id = file->plain(element.attribute("ID"));
         const std::string kind = file->plain(element.attribute("Type"));
-        const auto is_there = [&](const auto& other) {
-            return other->part == id && other->read_as == mapp_form;
-        };
-        if (!is_one_name(id) || std::ranges::any_of(to.project.sources, is_there)) continue;
-        const Mark place = file->mark_of_tag(element);
-        Excerpts text;
-        text.write("VAR_GLOBAL\n", place);
-        file->copy(text, element.attribute("ID"));
-        text.write(fmt::format(" : {};\nEND_VAR\n", type_of_element(kind)), place);
-        SourceFile made = *text.finish(path, id);
-        made.read_as = mapp_form;
-        to.project.add(std::make_shared<const SourceFile>(std::move(made)));
+        declare(to, *file, element, element.attribute("ID"), type_of_element(kind));
+        if (kind != "processpointlist" && kind != "trafficobjectlist") continue;
+        for (const pugi::xml_node part : element.children("Selector"))
+            declare(to, *file, part, name_of_part(*file, part), type_of_part(*file, part));
     }
 }
 

@@ -94,7 +94,7 @@ void add_once(Checking& c, Routine& block, Place place, Block& to) {
         block.begun->section = block.has_instances() ? Section::local : Section::kept;
         block.begun->retention = Retention::non_retain;
     }
-    to.push_back(make_once(c, like, *block.begun, block.begins));
+    to.push_back(make_once(c, like, *block.begun, make_copies(c, block.begins)));
 }
 
 void add_bases_first(Checking& c, Routine& block, Place place, Block& to) {

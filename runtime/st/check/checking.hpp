@@ -42,6 +42,11 @@ struct Names {
     NameMap<Place> places;                     ///< of all of them
 };
 
+/// `g` of `.g`, which CODESYS writes of what is global.
+inline std::string_view without_point(std::string_view name) {
+    return name.starts_with('.') ? name.substr(1) : name;
+}
+
 inline bool is_prelude(const Token& name) {
     return name.place.source && name.place.source->is_prelude();
 }
@@ -184,9 +189,10 @@ struct Checking {
     void note_value(Place at, const Type& enumeration, std::size_t value);
 
     /// What a name is. The prelude and libraries see nothing of the user's; what they declare he
-    /// sees where he has no such name.
+    /// sees where he has no such name. All are global, so a point in front says nothing more.
     template <class T>
-    auto look_up(NameMap<T> Names::*map, const Token& name) {
+    auto look_up(NameMap<T> Names::*map, Token name) {
+        name.text = without_point(name.text);
         if (!is_prelude(name))
             if (auto* found = find_inside_out(users.*map, name)) return found;
         return find_in(prelude.*map, name.text);

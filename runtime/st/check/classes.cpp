@@ -443,12 +443,13 @@ bool rewrite_property(Checking& c, Statement*& s) {
         return true;
     }
     if (!is_accessible(c, setter->pou->access, *setter->owner, target->token)) return true;
-    const Expression& receiver = receiver_of(c, *target);
+    Expression* named = make_copy(c, *target);  // others may have the statement, too: make_copies
+    const Expression& receiver = receiver_of(c, *named);
     Expression* value = s->value;
     if (s->op != Word::assign && s->op != Word::reference_assign)
         value =
             make_binary(c, s->place, s->place, operator_of(s->op), make_copy(c, *target), value);
-    Expression* call = make_call(c, *target, target, {{.value = value}});
+    Expression* call = make_call(c, *target, named, {{.value = value}});
     check_method_call(c, call, *setter, receiver, true);
     s = make_call_statement(c, call);
     return true;

@@ -4,11 +4,6 @@
 
 namespace lineshaft::st {
 
-/// `g` of `.g`.
-inline std::string_view without_point(std::string_view name) {
-    return name.starts_with('.') ? name.substr(1) : name;
-}
-
 /// In the routine, then in its block, then among the globals; null if there is none.
 Variable* find_variable(Checking& c, const Token& token);
 /// Whether it is of the routine or its block, which hides what stands beside them.

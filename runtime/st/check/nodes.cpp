@@ -36,6 +36,17 @@ Expression* make_copy(Checking& c, const Expression& e) {
     return keep(c, Expression(e));
 }
 
+Block make_copies(Checking& c, const Block& statements) {
+    Block made;
+    for (const Statement* s : statements) {
+        Statement* copy = keep(c, Statement(*s));
+        copy->body = make_copies(c, s->body);
+        for (Branch& branch : copy->branches) branch.body = make_copies(c, branch.body);
+        made.push_back(copy);
+    }
+    return made;
+}
+
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value) {
     return keep(
         c, {.token = like.token, .place = like.place, .type = &type, .constant = std::move(value)});

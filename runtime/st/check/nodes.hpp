@@ -18,6 +18,8 @@ double as_real(const Expression& constant);
 Expression* make(Checking& c, E kind, const Expression& like);
 /// The same once more.
 Expression* make_copy(Checking& c, const Expression& e);
+/// Statements that may be checked beside the others, of the same expressions.
+Block make_copies(Checking& c, const Block& statements);
 /// A value, where `like` stands.
 Expression* make_constant(Checking& c, const Expression& like, const Type& type, Constant value);
 /// `e` becomes that value, whose type is given. It is never null.

@@ -38,12 +38,19 @@ void assign_instance(Writing& w, const Statement& s) {
     store(w, kind, kept);
 }
 
+/// In tests how often it was called, or that it is mocked, stays its own.
+void assign_standard(Writing& w, const Statement& s) {
+    const Location to = locate(w, *s.target);
+    copy(w, to, locate(w, *s.value), s.target->type->slots - (w.has_tests ? 1 : 0));
+}
+
 void write_assignment(Writing& w, const Statement& s) {
     if (s.target->kind == Expression::Kind::bit)
         return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
     if (s.target->is_character()) return write_character(w, s);
     const Type& type = *s.target->type;
     if (type.kind == Kind::block && w.code.has_kinds) return assign_instance(w, s);
+    if (type.kind == Kind::standard) return assign_standard(w, s);
     assign(w, locate(w, *s.target), type, *s.value);
 }
 

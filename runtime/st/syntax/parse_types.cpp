@@ -97,8 +97,10 @@ bool has_range(const Parsing& p) {
 ///             | Name Init_Values | Name '[' Init_Values ( ',' Init_Values ) * ']'
 ///             | Name '(' Subrange ')'
 ///             | Qualified_Name Generic_Values Init_Values ?
+/// CODESYS may write a '.' before it, as before a global variable.
 void parse_named_type(Parsing& p, TypeText& type) {
     if (p.here().text == "_" && p.next().word == Word::dot) p.at += 2;
+    if (at_name_behind_point(p)) p.take();
     type.name = parse_qualified_name(p, "a type");
     parse_generic_values(p, type.name);
     if (p.panic) return;
