@@ -233,7 +233,7 @@ SpeedProblem::Triple SpeedProblem::around(const std::array<double, most_speed_in
     return {k > 0 ? values[k - 1] : 0, values[k], k + 1 < n ? values[k + 1] : 0};
 }
 
-/// Of the sum of the intervals' times: its gradient, and of its second derivatives the diagonal.
+/// The gradient of the sum of the intervals' times, and the diagonal of its second derivatives.
 void SpeedProblem::begin_bands() {
     diagonal.fill(0), next.fill(0), second.fill(0);
     for (std::size_t k = 1; k + 1 < n; ++k) {
@@ -270,7 +270,7 @@ void SpeedProblem::assemble() {
         }
 }
 
-/// Of a group, in terms of w'', w' and w.
+/// A group's, in terms of w'', w' and w.
 void SpeedProblem::add_squares(std::size_t k, const Group& group, const Squares& sums) {
     const double f = group.scale * group.scale;
     const auto& [xx, xy, xz, yy, yz, zz] = sums;
