@@ -296,6 +296,9 @@ def check_short_paths(lineshaft):
             yield f"--path, with '{unit}': exit code {code}, said {err!r}"
     if not rows[""] == rows[" mm"] == rows["mm"]:
         yield f"--path: a unit changes {rows['']!r} to {rows[' mm']!r} and {rows['mm']!r}"
+    code, out, err = run(lineshaft, *limits, "--every", "1", text="position1\n0\n1e300\n")
+    if code != 2 or "the path 1 cannot be planned: it takes more than 1e12 rows" not in err or out.count("\n") > 2:
+        yield f"--path --every, a line of 1e300: exit code {code}, {out[:99]!r}, said {err!r}"
     if run(lineshaft, *limits, text="position1\n0 mm\n3 m\n")[0] != 2:
         yield "--path: two units in a column are accepted"
     for by in (signal.SIGTERM, signal.SIGINT):

@@ -115,6 +115,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
     const bool commanded = path.stale;
     look_back_where_changed(path, ring);
     path.fresh = false;
+    if (commanded) path.vain = {};
     MotionState from = state_of(path);
     from.position = 0;
     const double base = place_of(path);
@@ -126,7 +127,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
             path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
     if (path.halted) into = halt_harder(path, outlook, from, into, leg);
     if (into == IntoBoxes::none) return false;
-    if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg);
+    if (outlook.factor > 0 && into == IntoBoxes::soon) look_ahead(outlook, 0, leg, path.vain);
     path.leg = leg;
     path.time = 0;
     note_leg(path, ring);
@@ -140,7 +141,7 @@ void go_on(Path& path, std::span<PathPiece> ring) {
     path.fresh = false;
     const PathOutlook outlook = outlook_of(path, ring);
     if (outlook.factor > 0 && path.time < path.leg.duration() &&
-        look_ahead(outlook, path.time, path.leg)) {
+        look_ahead(outlook, path.time, path.leg, path.vain)) {
         path.time = 0;
         note_leg(path, ring);
     } else if (stops_short(path, ring)) {
@@ -176,16 +177,14 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
     path.stretch = path.leg.goal + 1;
     look_back_where_changed(path, ring);
     const double base = path.leg.end;
-    path.leg = {};
-    path.leg.base = path.leg.end = base;
-    path.leg.goal = path.stretch;
+    path.leg.stand(base, path.stretch);
     if (path.stretch == path.stretches) {
         path.first = path.count;
         return;
     }
     const PathOutlook outlook = outlook_of(path, ring);
     path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, path.leg);
-    if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg);
+    if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg, path.vain);
     note_leg(path, ring);
 }
 
@@ -264,7 +263,7 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
     PathPiece& piece = piece_at(ring, path.count);
     piece.curve = curve;
     piece.limits = limits;
-    for (std::size_t i = 0; i < most_path_axes; ++i) piece.bounds[i] = bound_of(curve, i);
+    piece.bounds = bounds_of(curve);
     piece.begin = path.total;
     piece.way = path.count > 0 ? way_behind(piece_at(ring, path.count - 1)) : 0;
     ++path.count;
@@ -373,7 +372,7 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const 
     if (count - first >= ring.size()) return PathFault::full;
     if (!is_good(limits.path)) return PathFault::limit_not_positive;
     for (std::size_t i = 0; i < most_path_axes; ++i) {
-        if (curve.share(i) > 0 && !is_good(limits.axes[i])) return PathFault::limit_not_positive;
+        if (curve.moves(i) && !is_good(limits.axes[i])) return PathFault::limit_not_positive;
     }
     const PathLimit box = box_of(curve, limits);
     if (!is_good(box)) return PathFault::not_finite;

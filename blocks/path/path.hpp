@@ -59,6 +59,7 @@ struct Path {
     bool fresh = false;  ///< stretches have changed since the leg under way was planned
     bool lost = false;   ///< numbers too many decades apart to be planned: it stands there
     PathLeg leg;         ///< under way
+    PathVain vain;
 
     /// One piece more, with its limits. A corner is as far from the vertex as `joint` says, or as
     /// the lines leave room, half of the new one; where the path under way cannot be braked any

@@ -31,6 +31,8 @@ struct Chain {
     bool is_curved = false;
 
     bool add(const PathLeg& leg, double since);
+    std::size_t add(const PathOutlook& outlook, const PathPieces& pieces, const PathLeg& first,
+                    double since, std::size_t most);
     bool has_room(const PathPieces& pieces, double to);
 };
 
@@ -56,6 +58,23 @@ bool Chain::add(const PathLeg& leg, double since) {
     return all;
 }
 
+/// What is left of a leg and those that follow it, up to so many. How many; 0 where there is no
+/// room.
+std::size_t Chain::add(const PathOutlook& outlook, const PathPieces& pieces, const PathLeg& first,
+                       double since, std::size_t most) {
+    if (!has_room(pieces, first.end) || !add(first, since)) return 0;
+    std::size_t legs = 1;
+    for (PathLeg next; legs < most && course.end.velocity > 0 && !outlook.stretches.is_last(goal);
+         ++legs) {
+        if (!plan_leg(from_stretch(outlook.stretches, goal + 1), {0, course.end.velocity, 0, 0},
+                      end, outlook.factor, outlook.halt, next) ||
+            !has_room(pieces, next.end) || course.count + next.plan.count > PathCourse::most_phases)
+            break;
+        add(next, 0);
+    }
+    return legs;
+}
+
 /// Of the pieces behind `end` up to a place.
 bool Chain::has_room(const PathPieces& pieces, double to) {
     constexpr double most_intervals = 0.6 * most_speed_intervals;
@@ -69,6 +88,12 @@ bool Chain::has_room(const PathPieces& pieces, double to) {
         is_curved = is_curved || piece.curve.kind != PathCurveKind::line;
     }
     return need.intervals <= most_intervals && need.rows <= most_rows;
+}
+
+bool is_straight(const PathPieces& pieces, double to) {
+    for (PathPieces on = pieces; on.first < on.count && on[on.first].begin < to; ++on.first)
+        if (on[on.first].curve.kind != PathCurveKind::line) return false;
+    return true;
 }
 
 /// When it begins to come down to its end.
@@ -160,34 +185,35 @@ bool try_ramp(const PathOutlook& outlook, const MotionState& from, double base, 
 
 }  // namespace
 
-bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg) {
+bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain& vain) {
     constexpr double worth = 0.998;
-    Chain chain;
-    const MotionState now = leg.at(since);
-    chain.base = chain.end = leg.base + now.position;
-    const PathPieces pieces = from_place(outlook.pieces, chain.base);
-    if (!chain.has_room(pieces, leg.end) || !chain.add(leg, since)) return false;
-    for (PathLeg next; chain.course.end.velocity > 0 && !outlook.stretches.is_last(chain.goal);) {
-        if (!plan_leg(from_stretch(outlook.stretches, chain.goal + 1),
-                      {0, chain.course.end.velocity, 0, 0}, chain.end, outlook.factor, outlook.halt,
-                      next) ||
-            !chain.has_room(pieces, next.end) ||
-            chain.course.count + next.plan.count > PathCourse::most_phases)
-            break;
-        chain.add(next, 0);
-    }
-    PathCourse sooner;
-    if (!chain.is_curved ||
-        !find_optimum(pieces, chain.course, chain.base, outlook.factor, sooner) ||
-        sooner.duration > worth * chain.course.duration)
+    constexpr std::size_t fewest = 2;
+    const double base = leg.base + leg.at(since).position;
+    const PathPieces pieces = from_place(outlook.pieces, base);
+    if (base < vain.until || (leg.end_velocity() == 0 && is_straight(pieces, leg.end)))
         return false;
-    leg.plan = {};
-    leg.course = sooner;
-    leg.base = chain.base;
-    leg.end = chain.end;
-    leg.goal = chain.goal;
-    leg.ripe = ripe_at(sooner);
-    return true;
+    for (std::size_t legs = vain.legs;; legs /= 2) {
+        Chain chain;
+        chain.base = chain.end = base;
+        legs = chain.add(outlook, pieces, leg, since, legs);
+        if (legs == 0 || !chain.is_curved) return false;
+        PathCourse sooner;
+        if (find_optimum(pieces, chain.course, base, outlook.factor, sooner) &&
+            sooner.duration <= worth * chain.course.duration) {
+            leg.plan = {};
+            leg.course = sooner;
+            leg.base = base;
+            leg.end = chain.end;
+            leg.goal = chain.goal;
+            leg.ripe = ripe_at(sooner);
+            vain.legs = std::max(2 * legs, fewest);
+            return true;
+        }
+        if (legs <= fewest) {
+            vain = {0.5 * (base + chain.end), fewest};
+            return false;
+        }
+    }
 }
 
 IntoBoxes plan_into_boxes(const PathOutlook& outlook, const MotionState& from, double base,

@@ -16,9 +16,9 @@ struct PathOutlook {
 };
 
 /// Makes of a leg and those that would follow it one that is sooner, where curves leave more than
-/// boxes; `since` is how much of the leg is over [s]. False, and nothing has changed, where there
-/// is none.
-bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg);
+/// boxes; `since` is how much of the leg is over [s]. False, and the leg is as it was, where there
+/// is none. What is looked for in vain is not looked for again from leg to leg.
+bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain& vain);
 
 /// What can be had from a state that is in no box, as an optimum may lead through: the sooner ones
 /// are to be tried for again from a later state.

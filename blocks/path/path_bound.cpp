@@ -49,24 +49,39 @@ PathBound greater_of(const PathBound& a, const PathBound& b) {
             std::max(a.fourth, b.fourth), std::max(a.fifth, b.fifth)};
 }
 
-PathBound bound_of_spline(const PathCurve& c, std::size_t axis) {
-    constexpr int parts = 16;
-    constexpr double half = 0.5 / parts;
-    const PathPolynomial x{c.origin[axis], c.u[axis],      c.w[axis],
-                           c.slope[axis],  c.fourth[axis], c.fifth[axis]};
-    PathBound out;
-    if (std::all_of(x.begin() + 1, x.end(), [](double part) { return part == 0; })) return out;
-    for (int k = 0; k < parts; ++k) {
-        const double middle = (k + 0.5) / parts;
-        Sizes m = greatest_within(c.map, middle, half);
+/// A sixteenth of a spline.
+struct SplinePart {
+    double middle = 0, half = 0;  ///< of its parameter
+    Sizes map;                    ///< by the length
+};
+
+constexpr std::size_t spline_parts = 16;
+
+std::array<SplinePart, spline_parts> parts_of_spline(const PathCurve& c) {
+    constexpr double half = 0.5 / spline_parts;
+    std::array<SplinePart, spline_parts> out;
+    for (std::size_t k = 0; k < spline_parts; ++k) {
+        const double middle = (static_cast<double>(k) + 0.5) / spline_parts;
+        out[k].map = greatest_within(c.map, middle, half);
         double per = 1;
-        for (double& size : m) {
+        for (double& size : out[k].map) {
             size *= per;
             per /= c.length;
         }
-        const double wide = m[1] * half * c.length;
-        out = greater_of(out, composed(greatest_within(x, value_of(c.map, middle), wide), m));
+        out[k].middle = value_of(c.map, middle);
+        out[k].half = out[k].map[1] * half * c.length;
     }
+    return out;
+}
+
+PathBound bound_of_spline(const PathCurve& c, std::size_t axis,
+                          const std::array<SplinePart, spline_parts>& parts) {
+    const PathPolynomial x{c.origin[axis], c.u[axis],      c.w[axis],
+                           c.slope[axis],  c.fourth[axis], c.fifth[axis]};
+    PathBound out;
+    if (!c.moves(axis)) return out;
+    for (const SplinePart& part : parts)
+        out = greater_of(out, composed(greatest_within(x, part.middle, part.half), part.map));
     return out;
 }
 
@@ -91,9 +106,19 @@ PathBound bound_of(const PathCurve& curve, std::size_t axis) {
         case PathCurveKind::corner:
             return bound_of_turn(std::max(std::abs(u), std::abs(w)), std::abs(w - u), curve.length);
         case PathCurveKind::spline:
-            return bound_of_spline(curve, axis);
+            return bound_of_spline(curve, axis, parts_of_spline(curve));
     }
     return {};
+}
+
+PathBounds bounds_of(const PathCurve& curve) {
+    PathBounds out;
+    const bool is_spline = curve.kind == PathCurveKind::spline;
+    std::array<SplinePart, spline_parts> parts;
+    if (is_spline) parts = parts_of_spline(curve);
+    for (std::size_t i = 0; i < most_path_axes; ++i)
+        out[i] = is_spline ? bound_of_spline(curve, i, parts) : bound_of(curve, i);
+    return out;
 }
 
 PathBound bound_of_corner(const PathCurve& corner) {

@@ -12,6 +12,9 @@ struct PathBound {
 
 PathBound bound_of(const PathCurve& curve, std::size_t axis);
 
+using PathBounds = std::array<PathBound, most_path_axes>;
+PathBounds bounds_of(const PathCurve& curve);
+
 /// That of the size of the whole vector of a corner in the first three axes.
 PathBound bound_of_corner(const PathCurve& corner);
 

@@ -55,8 +55,8 @@ AllBounded bounds_of_corner(const PathCurve& u, const PathCurve& w, double lengt
 
 AllBounded bounds_of_spline(const PathCurve& spline, const PathLimits& limits) {
     AllBounded out{Bounded{{1, 0, 0, 0, 0}, limits.path}};
-    for (std::size_t i = 0; i < most_path_axes; ++i)
-        out[i + 1] = {bound_of(spline, i), limits.axes[i]};
+    const PathBounds bounds = bounds_of(spline);
+    for (std::size_t i = 0; i < most_path_axes; ++i) out[i + 1] = {bounds[i], limits.axes[i]};
     return out;
 }
 

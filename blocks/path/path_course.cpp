@@ -4,6 +4,12 @@
 
 namespace lineshaft {
 
+void PathCourse::clear() {
+    count = 0;
+    duration = 0;
+    end = {};
+}
+
 bool PathCourse::add(const PathPhase& phase, double lasts) {
     if (count == phases.size()) return false;
     phases[count] = phase;

@@ -16,6 +16,9 @@ struct PathCourse {
     MotionState end;
     std::array<PathPhase, most_phases> phases{};
 
+    /// Without any phase.
+    void clear();
+
     /// One phase more, from `end` on or from where `start` says. False where there is no room.
     bool add(const PathPhase& phase, double lasts);
 

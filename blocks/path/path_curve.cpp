@@ -200,9 +200,14 @@ PathPoint PathCurve::at(double s) const {
     return out;
 }
 
+bool PathCurve::moves(std::size_t axis) const {
+    return u[axis] != 0 || w[axis] != 0 || slope[axis] != 0 || fourth[axis] != 0 ||
+           fifth[axis] != 0;
+}
+
 bool PathCurve::is_in_space() const {
     for (std::size_t i = 0; i < path_space; ++i)
-        if (share(i) != 0) return true;
+        if (moves(i)) return true;
     return false;
 }
 

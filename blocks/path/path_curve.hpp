@@ -54,6 +54,9 @@ struct PathCurve {
     /// s beyond an end is taken as that end.
     PathPoint at(double s) const;
 
+    /// An axis moves along it.
+    bool moves(std::size_t axis) const;
+
     /// One of the first three axes moves.
     bool is_in_space() const;
 

@@ -140,14 +140,14 @@ bool plan_to(ConstPathStretches stretches, const Departure& departure, const Spa
 
 bool plan_halt(ConstPathStretches stretches, const Departure& departure, Span span, PathLeg& out) {
     const auto& [from, base, factor] = departure;
+    MotionPlan motion;
     for (;;) {
         const double way = way_to(from, 0, span.least);
         const double end = stretches[span.goal].end;
         if (base + way <= end) {
-            if (!plan_with(stretches, departure, span, span.fastest, {way, 0}, out.plan))
+            if (!plan_with(stretches, departure, span, span.fastest, {way, 0}, motion))
                 return false;
-            out.end = base + way;
-            out.goal = span.goal;
+            out.take(motion, base, base + way, span.goal);
             return true;
         }
         if (!(way < infinite) || stretches.is_last(span.goal)) return false;
@@ -214,6 +214,20 @@ double way_to(const MotionState& from, double velocity, const PathLimit& box) {
     return ramp.end.position;
 }
 
+void PathLeg::stand(double place, std::uint64_t number) {
+    take({}, place, place, number);
+    ripe = 0;
+}
+
+void PathLeg::take(const MotionPlan& motion, double from, double to, std::uint64_t stretch) {
+    plan = motion;
+    course.clear();
+    base = from;
+    end = to;
+    goal = stretch;
+    ripe = infinite;
+}
+
 double PathLeg::time_at(double way) const {
     const double lasts = duration();
     double t = 0;
@@ -235,36 +249,26 @@ bool plan_leg(ConstPathStretches stretches, const MotionState& from, double base
     const PathStretch& first = stretches[stretches.first];
     const Departure departure{from, base, factor};
     Span span{stretches.first, first.box, first.box.velocity};
-    PathLeg leg;
-    leg.base = base;
-    leg.ripe = infinite;
     Span gentle = span;
     gentle.least = least_of(span.least, halt);
-    if (factor == 0 && (plan_halt(stretches, departure, gentle, leg) ||
-                        plan_halt(stretches, departure, span, leg))) {
-        out = leg;
+    if (factor == 0 && (plan_halt(stretches, departure, gentle, out) ||
+                        plan_halt(stretches, departure, span, out)))
         return true;
-    }
-    bool found = plan_to(stretches, departure, span, leg.plan);
+    MotionPlan motion;
+    bool found = plan_to(stretches, departure, span, motion);
     if (!found) {
         span.extend(stretches, first.target);
-        found = plan_to(stretches, departure, span, leg.plan);
+        found = plan_to(stretches, departure, span, motion);
     }
     if (!found) {
-        leg.end = first.ramp_end;
-        leg.goal = first.target;
-        if (!plan_to(stretches, departure, span, first.ramp_end, first.ramp_exit, leg.plan))
+        if (!plan_to(stretches, departure, span, first.ramp_end, first.ramp_exit, motion))
             return false;
-        out = leg;
+        out.take(motion, base, first.ramp_end, first.target);
         return true;
     }
-    if (factor > 0) {
-        extend(stretches, departure, span, leg.plan);
-        if (!ends_well(stretches, span, leg.plan, factor)) leg.ripe = ripe_at(leg.plan);
-    }
-    leg.goal = span.goal;
-    leg.end = stretches[span.goal].end;
-    out = leg;
+    if (factor > 0) extend(stretches, departure, span, motion);
+    out.take(motion, base, stretches[span.goal].end, span.goal);
+    if (factor > 0 && !ends_well(stretches, span, motion, factor)) out.ripe = ripe_at(motion);
     return true;
 }
 

@@ -23,9 +23,22 @@ struct PathLeg {
     double end_velocity() const { return (course.count > 0 ? course.end : plan.end).velocity; }
     MotionState at(double t) const { return course.count > 0 ? course.at(t) : plan.at(t); }
 
+    /// It stands there: at the end of what is behind it, before the stretch `number`.
+    void stand(double place, std::uint64_t number);
+
+    /// This plan from `from` on, to a place in a stretch.
+    void take(const MotionPlan& motion, double from, double to, std::uint64_t stretch);
+
     /// The first instant at which no less than a way [u] is behind it; `duration` where it is
     /// shorter [s].
     double time_at(double way) const;
+};
+
+/// Where courses were looked for in vain: over fewer legs one is looked for the next time, and
+/// none before a place.
+struct PathVain {
+    double until = 0;  ///< along the path [u]
+    std::uint64_t legs = PathCourse::most_phases;
 };
 
 /// The next leg from a state (its position is 0) at `base` within the first of the stretches, with

@@ -82,6 +82,34 @@ SpeedInterval interval_on(const PathPiece& piece, double base, double begin, dou
     return out;
 }
 
+struct Sample {
+    double t = 0, value = 0;
+};
+
+/// Where a rising function comes to a value, up to `near`: by false position, in which an end that
+/// stays twice counts for half.
+template <class Rising>
+Sample sample_at(const Rising& rising, Sample low, Sample high, double wanted, double near) {
+    double below = low.value - wanted, above = high.value - wanted;
+    double before = 0;
+    Sample out = high;
+    for (int step = 0; step < 16; ++step) {
+        out.t = low.t + (high.t - low.t) * (below / (below - above));
+        out.value = rising(out.t);
+        const double off = out.value - wanted;
+        if (std::abs(off) <= near) break;
+        if (off < 0) {
+            if (before < 0) above *= 0.5;
+            low = out, below = off;
+        } else {
+            if (before > 0) below *= 0.5;
+            high = out, above = off;
+        }
+        before = off;
+    }
+    return out;
+}
+
 /// The part of a piece from one place to another.
 bool add_piece(const PathPieces& pieces, std::uint64_t number, const PathCourse& guess,
                const MeshWish& wish, double fineness, double from, double to, PathMesh& out) {
@@ -97,16 +125,13 @@ bool add_piece(const PathPieces& pieces, std::uint64_t number, const PathCourse&
     if (!(static_cast<double>(out.count) + parts <= static_cast<double>(out.intervals.size())))
         return false;
     const auto n = static_cast<std::size_t>(parts);
-    double begin = from, t = first;
+    constexpr double near = 1e-3;
+    double begin = from;
+    Sample at{first, 0};
     for (std::size_t k = 1; k <= n; ++k) {
-        double low = t, high = last;
         const double wanted = all * static_cast<double>(k) / parts;
-        for (int step = 0; step < 16 && k < n; ++step) {
-            const double middle = 0.5 * (low + high);
-            (until(middle) < wanted ? low : high) = middle;
-        }
-        t = high;
-        const double end = k == n ? to : guess.at(t).position;
+        if (k < n) at = sample_at(until, at, {last, all}, wanted, near);
+        const double end = k == n ? to : guess.at(at.t).position;
         if (!(end > begin)) return false;
         out.intervals[out.count] = interval_on(piece, wish.base, begin, end, wish.factor);
         const double v = guess.at(guess.time_at(0.5 * (begin + end))).velocity;

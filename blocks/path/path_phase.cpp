@@ -1,25 +1,40 @@
 #include "blocks/path/path_phase.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lineshaft {
 
 namespace {
 
+constexpr std::size_t most_terms = 13;
+
+/// 1 / (2n + first)! for all terms.
+constexpr std::array<double, most_terms> inverse_factorials(double first) {
+    std::array<double, most_terms> out{};
+    double last = first, factorial = first;
+    for (double& inverse : out) {
+        inverse = 1 / factorial;
+        factorial *= (last + 1) * (last + 2);
+        last += 2;
+    }
+    return out;
+}
+
+constexpr auto of_sine = inverse_factorials(1), of_cosine = inverse_factorials(2);
+
 /// sinh(r)/r and (cosh(r) - 1)/r^2 with r^2 = z, also below 0: sin and cos then.
 struct Stumpff {
-    double sine = 1, cosine = 0.5;
+    double sine = 0, cosine = 0;
 
     explicit Stumpff(double z) {
-        constexpr int most_terms = 12;
-        double s = 1, c = 1;
-        for (int n = most_terms; n > 0; --n) {
-            s = 1 + s * z / (2 * n * (2 * n + 1));
-            c = 1 + c * z / ((2 * n + 1) * (2 * n + 2));
+        constexpr double small = 0.25;
+        constexpr std::size_t few_terms = 8;
+        for (std::size_t n = std::abs(z) < small ? few_terms : most_terms; n-- > 0;) {
+            sine = of_sine[n] + sine * z;
+            cosine = of_cosine[n] + cosine * z;
         }
-        sine = s;
-        cosine = 0.5 * c;
     }
 };
 

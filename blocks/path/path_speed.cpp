@@ -9,6 +9,13 @@ namespace {
 
 constexpr double no_limit = 1e200;
 
+typedef double Sides [[gnu::vector_size(16)]];
+constexpr Sides signs{1, -1};
+
+double both(const Sides& sides) {
+    return sides[0] + sides[1];
+}
+
 /// A direction in the plane of a corner.
 struct Across {
     double cosine, sine;
@@ -44,6 +51,52 @@ void each_bounded(const SpeedInterval& here, const PathPoint& x, double PathLimi
             use(x.tangent[i], x.bend[i], x.twist[i], here.limits->axes[i].*of);
 }
 
+/// What is left of the velocity at a point where all limits of acceleration are kept.
+double fastest_at(const SpeedInterval& here, const PathPoint& x) {
+    const double v = here.along.velocity, A = here.limits->path.acceleration;
+    double energy = 0.5 * v * v;
+    each_bounded(
+        here, x, &PathLimit::acceleration, [&](double tangent, double bend, double, double limit) {
+            if (bend != 0)
+                energy = std::min(energy, (limit + std::abs(tangent) * A) / (2 * std::abs(bend)));
+        });
+    return std::sqrt(2 * energy);
+}
+
+/// A part of the limits that are left when they have been tightened.
+constexpr double tightened = 0.8;
+
+/// Calls `use(tangent, bend, limit)` for all accelerations that the others do not keep small.
+template <class Use>
+void each_acceleration(const SpeedInterval& here, const PathPoint& x, const Use& use) {
+    const double A = here.limits->path.acceleration, v = fastest_at(here, x);
+    bool is_first = true;
+    each_bounded(here, x, &PathLimit::acceleration,
+                 [&](double tangent, double bend, double, double limit) {
+                     const double most = std::abs(tangent) * A + std::abs(bend) * v * v;
+                     if (limit < no_limit && (is_first || !(most < tightened * limit)))
+                         use(tangent, bend, limit);
+                     is_first = false;
+                 });
+}
+
+/// Likewise with the twist for all jerks.
+template <class Use>
+void each_jerk(const SpeedInterval& here, const PathPoint& x, const Use& use) {
+    const PathLimit& path = here.limits->path;
+    const double v = fastest_at(here, x);
+    bool is_first = true;
+    each_bounded(here, x, &PathLimit::jerk,
+                 [&](double tangent, double bend, double twist, double limit) {
+                     const double most = std::abs(tangent) * path.jerk +
+                                         3 * std::abs(bend) * v * path.acceleration +
+                                         std::abs(twist) * v * v * v;
+                     if (limit < no_limit && (is_first || !(most < tightened * limit)))
+                         use(tangent, bend, twist, limit);
+                     is_first = false;
+                 });
+}
+
 }  // namespace
 
 SpeedProblem::SpeedProblem(std::span<const SpeedInterval> intervals, const SpeedEnd& from,
@@ -58,6 +111,7 @@ SpeedProblem::SpeedProblem(std::span<const SpeedInterval> intervals, const Speed
     std::copy(energies.begin(), energies.end(), guess.begin());
     guess[0] = from.energy + 0.5 * from.acceleration * in[0].length;
     guess[n - 1] = to.energy - 0.5 * to.acceleration * in[n - 1].length;
+    find_groups();
     time = 0;
     for (std::size_t k = 0; k < n; ++k) time += in[k].length / std::sqrt(2 * guess[k]);
 }
@@ -68,54 +122,63 @@ void SpeedProblem::find_nodes() {
                     weights[k].rise * (b[k] - b[k - 1])};
 }
 
-void SpeedProblem::add(const Row& row) {
-    if (count < rows.size()) rows[count] = row;
+void SpeedProblem::find_groups() {
+    for (std::size_t k = 0; k < n; ++k) {
+        const Weights &l = weights[k], &r = weights[k + 1];
+        const double per = 1 / in[k].length;
+        const Triple slope{l.rise * per, -(l.rise + r.rise) * per, r.rise * per};
+        const Triple rise{-l.rise, l.rise, 0}, energy{l.before, l.behind, 0};
+        groups[k][at_node] = {0, 0, {}, rise, energy};
+        groups[k][in_middle] = {0, 0, {}, {}, {0, 1, 0}};
+        groups[k][at_left] = {0, 0, slope, rise, energy};
+        groups[k][at_right] = {0, 0, slope, {0, -r.rise, r.rise}, {0, r.before, r.behind}};
+    }
+}
+
+void SpeedProblem::add(double slope, double rise, double energy) {
+    if (count < rows.size()) rows[count] = {slope * signs, rise * signs, energy * signs, Sides{}};
     ++count;
 }
 
+void SpeedProblem::add_velocity(double fastest) {
+    add(0, 0, 2 / (fastest * fastest));
+}
+
 void SpeedProblem::add_rows_at_node(std::size_t k) {
-    const double before = weights[k].before, behind = weights[k].behind, rise = weights[k].rise;
-    const double fastest = std::min(in[k - 1].along.velocity, in[k].along.velocity);
-    const double most = 0.5 * fastest * fastest;
-    add({{before / most, behind / most, 0}, {}, 0, {}, most, true});
+    add_velocity(std::min(in[k - 1].along.velocity, in[k].along.velocity));
     const double tight = std::min(in[k - 1].tight, in[k].tight);
-    const auto bounded = [&](double tangent, double bend, double, double limit) {
-        if (limit >= no_limit) return;
-        const double p = tangent / (tight * limit), q = 2 * bend / (tight * limit);
-        add({{q * before - p * rise, q * behind + p * rise, 0}, {}, 0, {p, q, 0}, limit, false});
+    const auto bounded = [&](double tangent, double bend, double limit) {
+        add(0, tangent / (tight * limit), 2 * bend / (tight * limit));
     };
     const bool is_line = in[k].kind == PathCurveKind::line && in[k - 1].kind != PathCurveKind::line;
     const SpeedInterval& here = is_line ? in[k - 1] : in[k];
-    each_bounded(here, is_line ? here.right : here.left, &PathLimit::acceleration, bounded);
+    each_acceleration(here, is_line ? here.right : here.left, bounded);
     if (is_line || in[k].limits != in[k - 1].limits)
-        each_bounded(is_line ? in[k] : in[k - 1], is_line ? in[k].left : in[k - 1].right,
-                     &PathLimit::acceleration, bounded);
+        each_acceleration(is_line ? in[k] : in[k - 1], is_line ? in[k].left : in[k - 1].right,
+                          bounded);
 }
 
-void SpeedProblem::add_rows_of_jerk(std::size_t k, bool at_left) {
+void SpeedProblem::add_rows_of_jerk(std::size_t k, Place at) {
     const SpeedInterval& here = in[k];
-    each_bounded(here, at_left ? here.left : here.right, &PathLimit::jerk,
-                 [&](double tangent, double bend, double twist, double limit) {
-                     if (limit >= no_limit) return;
-                     add({{}, {}, 0, {tangent, bend, twist}, here.tight * limit, false});
-                 });
+    each_jerk(here, at == at_left ? here.left : here.right,
+              [&](double tangent, double bend, double twist, double limit) {
+                  const double per = 1 / (here.tight * limit);
+                  add(per * tangent, 3 * per * bend, 2 * per * twist);
+              });
 }
 
 /// False where there are too many.
 bool SpeedProblem::find_rows() {
     count = 0;
     for (std::size_t k = 0; k < n; ++k) {
-        rows_of[k].first = count;
-        if (k > 0) add_rows_at_node(k);
-        if (k > 0 && k + 1 < n) {
-            const double most = 0.5 * in[k].along.velocity * in[k].along.velocity;
-            add({{0, 1 / most, 0}, {}, 0, {}, most, true});
+        for (const Place place : {at_node, in_middle, at_left, at_right}) {
+            Group& group = groups[k][place];
+            group.first = count;
+            if (place == at_node && k > 0) add_rows_at_node(k);
+            if (place == in_middle && k > 0 && k + 1 < n) add_velocity(in[k].along.velocity);
+            if (place == at_left || place == at_right) add_rows_of_jerk(k, place);
+            group.end = count;
         }
-        rows_of[k].left = count;
-        add_rows_of_jerk(k, true);
-        rows_of[k].right = count;
-        add_rows_of_jerk(k, false);
-        rows_of[k].end = count;
     }
     if (count > rows.size()) return false;
     renew_rows();
@@ -125,49 +188,31 @@ bool SpeedProblem::find_rows() {
 /// Where b is now.
 void SpeedProblem::renew_rows() {
     for (std::size_t k = 0; k < n; ++k) {
-        const double w = nodes[k].energy, a = nodes[k].acceleration;
-        for (std::size_t r = rows_of[k].first; r < rows_of[k].left; ++r) {
-            Row& row = rows[r];
-            row.value = row.is_one_sided ? w / row.limit : row.factors[0] * a + row.factors[1] * w;
+        const double slope = (nodes[k + 1].acceleration - nodes[k].acceleration) / in[k].length;
+        renew(groups[k][at_node], 0, nodes[k]);
+        renew(groups[k][in_middle], 0, {b[k], 0});
+        for (const auto& [place, node] : {std::pair{at_left, k}, {at_right, k + 1}}) {
+            groups[k][place].scale = std::sqrt(2 * nodes[node].energy);
+            groups[k][place].falls = 0.5 / nodes[node].energy;
+            renew(groups[k][place], slope, nodes[node]);
         }
-        if (k > 0 && k + 1 < n) {
-            Row& of_middle = rows[rows_of[k].left - 1];
-            of_middle.value = b[k] / of_middle.limit;
-        }
-        renew_rows_of_jerk(k, true);
-        renew_rows_of_jerk(k, false);
     }
 }
 
-void SpeedProblem::renew_rows_of_jerk(std::size_t k, bool at_left) {
-    const std::size_t at = at_left ? k : k + 1;
-    const double w = nodes[at].energy, a = nodes[at].acceleration;
-    const Weights &l = weights[k], &r = weights[k + 1];
-    const double per = 1 / in[k].length, v = std::sqrt(2 * w), half = 0.5 / w;
-    const double slope = (nodes[k + 1].acceleration - nodes[k].acceleration) * per;
-    const Triple gs{l.rise * per, -(l.rise + r.rise) * per, r.rise * per};
-    const Triple gw = at_left ? Triple{l.before, l.behind, 0} : Triple{0, r.before, r.behind};
-    const Triple ga = at_left ? Triple{-l.rise, l.rise, 0} : Triple{0, -r.rise, r.rise};
-    const Triple falls{half * gw[0], half * gw[1], half * gw[2]};
-    const std::size_t first = at_left ? rows_of[k].left : rows_of[k].right;
-    const std::size_t end = at_left ? rows_of[k].right : rows_of[k].end;
-    for (Row& row : std::span(rows.data() + first, end - first)) {
-        const double f = v / row.limit;
-        const double x = f * row.factors[0], y = 3 * f * row.factors[1], z = 2 * f * row.factors[2];
-        row.value = x * slope + y * a + z * w;
-        row.falls = falls;
-        for (std::size_t i = 0; i < 3; ++i) row.gradient[i] = x * gs[i] + y * ga[i] + z * gw[i];
-    }
+void SpeedProblem::renew(const Group& group, double slope, const SpeedEnd& at) {
+    const double x = group.scale * slope, y = group.scale * at.acceleration;
+    const double z = group.scale * at.energy;
+    for (Row& row : std::span(rows).subspan(group.first, group.end - group.first))
+        row.value = row.slope * x + row.rise * y + row.energy * z;
 }
 
 void SpeedProblem::begin() {
     const double start = 1.0 / static_cast<double>(count);
     for (std::size_t r = 0; r < count; ++r) {
-        const double value = rows[r].value;
-        const double first = std::max(0.1, 1 - value), other = std::max(0.1, 1 + value);
-        duals[r] = {};
-        duals[r].slack = {first, rows[r].is_one_sided ? 1 : other};
-        duals[r].weight = {start / first, rows[r].is_one_sided ? 0 : start / other};
+        const Sides room = 1 - rows[r].value;
+        const Sides slack{std::max(0.1, room[0]), std::max(0.1, room[1])};
+        duals[r].slack = slack;
+        duals[r].weight = start / slack;
     }
 }
 
@@ -175,26 +220,11 @@ void SpeedProblem::begin() {
 void SpeedProblem::begin_again() {
     find_rows();
     const double least = 1e-2 / static_cast<double>(count);
-    for (std::size_t r = 0; r < count; ++r) {
-        for (std::size_t side = 0; side < (rows[r].is_one_sided ? 1 : 2); ++side) {
-            double &s = duals[r].slack[side], &weight = duals[r].weight[side];
-            s = std::max(side == 0 ? 1 - rows[r].value : 1 + rows[r].value, 1e-3);
-            weight = std::max(weight, least / s);
+    for (std::size_t r = 0; r < count; ++r)
+        for (const int side : {0, 1}) {
+            duals[r].slack[side] = std::max(1 - rows[r].value[side], 1e-3);
+            duals[r].weight[side] = std::max(duals[r].weight[side], least / duals[r].slack[side]);
         }
-    }
-}
-
-SpeedProblem::Progress SpeedProblem::progress() const {
-    Progress out;
-    for (std::size_t r = 0; r < count; ++r) {
-        const Row& row = rows[r];
-        const Dual& dual = duals[r];
-        out.gap += dual.slack[0] * dual.weight[0] + dual.slack[1] * dual.weight[1];
-        out.residual = std::max(out.residual, row.value - 1 + dual.slack[0]);
-        if (!row.is_one_sided)
-            out.residual = std::max(out.residual, -row.value - 1 + dual.slack[1]);
-    }
-    return out;
 }
 
 /// The values of k - 1, k and k + 1; 0 for those that are not there.
@@ -203,37 +233,71 @@ SpeedProblem::Triple SpeedProblem::around(const std::array<double, most_speed_in
     return {k > 0 ? values[k - 1] : 0, values[k], k + 1 < n ? values[k + 1] : 0};
 }
 
-/// The matrix of the linear equations.
-void SpeedProblem::assemble() {
+/// The gradient of the sum of the intervals' times, and the diagonal of its second derivatives.
+void SpeedProblem::begin_bands() {
     diagonal.fill(0), next.fill(0), second.fill(0);
     for (std::size_t k = 1; k + 1 < n; ++k) {
         const double square = 2 * b[k];
-        diagonal[k] += 3 * in[k].length / (square * square * std::sqrt(square) * time);
+        const double pull = in[k].length / (square * std::sqrt(square) * time);
+        diagonal[k] = 3 * pull / square;
+        least_time[k] = pull;
     }
-    for (std::size_t k = 0; k < n; ++k) {
-        Triple d = around(diagonal, k);
-        double before = k > 0 ? next[k - 1] : 0, behind = next[k], across = 0;
-        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
-            Dual& dual = duals[r];
-            dual.inverse = {1 / dual.slack[0], 1 / dual.slack[1]};
-            const double f1 = dual.weight[0] * dual.inverse[0];
-            const double f2 = dual.weight[1] * dual.inverse[1];
-            const double both = f1 + f2, odd = f1 - f2;
-            const Triple &g = rows[r].gradient, &e = rows[r].falls;
-            Triple mg, me;
-            for (std::size_t i = 0; i < 3; ++i) {
-                mg[i] = both * g[i] + odd * e[i];
-                me[i] = odd * g[i] + both * e[i];
+    right = least_time;
+}
+
+/// The matrix of the linear equations, and their right side for the step towards 0.
+void SpeedProblem::assemble() {
+    begin_bands();
+    for (std::size_t k = 0; k < n; ++k)
+        for (const Group& group : groups[k]) {
+            if (group.first == group.end) continue;
+            const double falls = group.falls / group.scale;
+            Sides xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, px{}, py{}, pz{};
+            for (std::size_t r = group.first; r < group.end; ++r) {
+                const Row& row = rows[r];
+                Dual& dual = duals[r];
+                dual.inverse = 1 / dual.slack;
+                const Sides f = dual.weight * dual.inverse;
+                const Sides pull = f * (row.value - 1 + dual.slack);
+                const Sides x = row.slope, y = row.rise, z = row.energy + falls;
+                const Sides fx = f * x, fy = f * y;
+                xx += fx * x, xy += fx * y, xz += fx * z;
+                yy += fy * y, yz += fy * z, zz += f * z * z;
+                px += pull * x, py += pull * y, pz += pull * z;
             }
-            for (std::size_t i = 0; i < 3; ++i) d[i] += g[i] * mg[i] + e[i] * me[i];
-            before += g[0] * mg[1] + e[0] * me[1];
-            behind += g[1] * mg[2] + e[1] * me[2];
-            across += g[0] * mg[2] + e[0] * me[2];
+            add_squares(k, group, {both(xx), both(xy), both(xz), both(yy), both(yz), both(zz)});
+            add_pulls(k, group, {both(px), both(py), both(pz)});
         }
-        diagonal[k] = d[1];
-        if (k > 0) diagonal[k - 1] = d[0], next[k - 1] = before, second[k - 1] = across;
-        if (k + 1 < n) diagonal[k + 1] = d[2], next[k] = behind;
+}
+
+/// A group's, in terms of w'', w' and w.
+void SpeedProblem::add_squares(std::size_t k, const Group& group, const Squares& sums) {
+    const double f = group.scale * group.scale;
+    const auto& [xx, xy, xz, yy, yz, zz] = sums;
+    const Triple &x = group.slope, &y = group.rise, &z = group.energy;
+    Triple mx, my, mz;
+    for (std::size_t i = 0; i < 3; ++i) {
+        mx[i] = f * (xx * x[i] + xy * y[i] + xz * z[i]);
+        my[i] = f * (xy * x[i] + yy * y[i] + yz * z[i]);
+        mz[i] = f * (xz * x[i] + yz * y[i] + zz * z[i]);
     }
+    const auto product = [&](std::size_t i, std::size_t j) {
+        return x[i] * mx[j] + y[i] * my[j] + z[i] * mz[j];
+    };
+    diagonal[k] += product(1, 1);
+    if (k > 0) diagonal[k - 1] += product(0, 0), next[k - 1] += product(0, 1);
+    if (k + 1 < n) diagonal[k + 1] += product(2, 2), next[k] += product(1, 2);
+    if (k > 0 && k + 1 < n) second[k - 1] += product(0, 2);
+}
+
+void SpeedProblem::add_pulls(std::size_t k, const Group& group, const Triple& sums) {
+    const auto pull = [&](std::size_t i) {
+        return group.scale *
+               (sums[0] * group.slope[i] + sums[1] * group.rise[i] + sums[2] * group.energy[i]);
+    };
+    right[k] -= pull(1);
+    if (k > 0) right[k - 1] -= pull(0);
+    if (k + 1 < n) right[k + 1] -= pull(2);
 }
 
 /// Of five bands, to L D L^T; both ends stay.
@@ -256,35 +320,26 @@ bool SpeedProblem::factor() {
     return true;
 }
 
-/// The step that leads each product of slack and multiplier to `target`, less what the product of
-/// their own changes came to in the step before if that `corrects`.
-template <bool corrects>
-void SpeedProblem::find_step(double target) {
-    right.fill(0);
-    for (std::size_t k = 1; k + 1 < n; ++k) {
-        const double square = 2 * b[k];
-        right[k] += in[k].length / (square * std::sqrt(square) * time);
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-        Triple sum = around(right, k);
-        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
-            const Row& row = rows[r];
-            const Dual& dual = duals[r];
-            const auto pull_of = [&](std::size_t side, double value) {
-                const double s = dual.slack[side], weight = dual.weight[side];
-                const double wanted = target - (corrects ? dual.product[side] : 0);
-                return (wanted + weight * (value - 1 + s)) * dual.inverse[side];
-            };
-            const double p1 = pull_of(0, row.value);
-            const double p2 = row.is_one_sided ? 0 : pull_of(1, -row.value);
-            for (std::size_t i = 0; i < 3; ++i)
-                sum[i] -= row.gradient[i] * (p1 - p2) + row.falls[i] * (p1 + p2);
+/// The right side for the step that leads each product of slack and multiplier to `target`, less
+/// what the product of their own changes came to in the step towards 0.
+void SpeedProblem::correct(double target) {
+    right = least_time;
+    for (std::size_t k = 0; k < n; ++k)
+        for (const Group& group : groups[k]) {
+            if (group.first == group.end) continue;
+            const double falls = group.falls / group.scale;
+            Sides px{}, py{}, pz{};
+            for (std::size_t r = group.first; r < group.end; ++r) {
+                const Row& row = rows[r];
+                const Dual& dual = duals[r];
+                const Sides off = row.value - 1 + dual.slack;
+                const Sides pull = (target - dual.product + dual.weight * off) * dual.inverse;
+                px += pull * row.slope;
+                py += pull * row.rise;
+                pz += pull * (row.energy + falls);
+            }
+            add_pulls(k, group, {both(px), both(py), both(pz)});
         }
-        right[k] = sum[1];
-        if (k > 0) right[k - 1] = sum[0];
-        if (k + 1 < n) right[k + 1] = sum[2];
-    }
-    solve_bands();
 }
 
 void SpeedProblem::solve_bands() {
@@ -306,27 +361,40 @@ template <bool corrects>
 SpeedProblem::Parts SpeedProblem::find_changes(double target) {
     constexpr double nearly = 0.985, least_energy = 0.2;
     Parts out;
-    for (std::size_t k = 0; k < n; ++k) {
-        const Triple steps = around(step, k);
-        const auto along = [&](const Triple& g) {
-            return g[0] * steps[0] + g[1] * steps[1] + g[2] * steps[2];
-        };
-        for (std::size_t r = rows_of[k].first; r < rows_of[k].end; ++r) {
-            const Row& row = rows[r];
-            Dual& dual = duals[r];
-            const double by = along(row.gradient), fall = along(row.falls);
-            for (std::size_t side = 0; side < (row.is_one_sided ? 1 : 2); ++side) {
-                const double sign = side == 0 ? 1 : -1, s = dual.slack[side], w = dual.weight[side];
-                const double ds = 1 - s - sign * (row.value + by) - fall;
-                const double wanted = target - (corrects ? dual.product[side] : 0);
-                const double dw = (wanted - w * (s + ds)) * dual.inverse[side];
-                if (out.primal * ds < -nearly * s) out.primal = -nearly * s / ds;
-                if (out.dual * dw < -nearly * w) out.dual = -nearly * w / dw;
-                dual.slack_change[side] = ds;
-                dual.weight_change[side] = dw;
+    for (std::size_t k = 0; k < n; ++k)
+        for (const Group& group : groups[k]) {
+            const Triple steps = around(step, k);
+            const auto along = [&](const Triple& g) {
+                return g[0] * steps[0] + g[1] * steps[1] + g[2] * steps[2];
+            };
+            const double x = group.scale * along(group.slope), y = group.scale * along(group.rise);
+            const double w = along(group.energy), z = group.scale * w, fall = group.falls * w;
+            for (std::size_t r = group.first; r < group.end; ++r) {
+                const Row& row = rows[r];
+                Dual& dual = duals[r];
+                const Sides by = row.value + row.slope * x + row.rise * y + row.energy * z;
+                const Sides slack = dual.slack, weight = dual.weight;
+                const Sides ds = 1 - fall - slack - by;
+                const Sides wanted = corrects ? target - dual.product : Sides{};
+                const Sides dw = (wanted - weight * (slack + ds)) * dual.inverse;
+                const Sides left = nearly * slack + out.primal * ds;
+                const Sides rest = nearly * weight + out.dual * dw;
+                for (const int side : {0, 1}) {
+                    if (left[side] < 0)
+                        out.primal = std::min(out.primal, -nearly * slack[side] / ds[side]);
+                    if (rest[side] < 0)
+                        out.dual = std::min(out.dual, -nearly * weight[side] / dw[side]);
+                }
+                dual.slack_change = ds;
+                dual.weight_change = dw;
+                if constexpr (!corrects) {
+                    dual.product = ds * dw;
+                    out.by_slack += ds * weight;
+                    out.by_weight += slack * dw;
+                    out.by_both += dual.product;
+                }
             }
         }
-    }
     for (std::size_t k = 1; k + 1 < n; ++k)
         if (out.primal * step[k] < (least_energy - 1) * b[k])
             out.primal = (least_energy - 1) * b[k] / step[k];
@@ -335,32 +403,32 @@ SpeedProblem::Parts SpeedProblem::find_changes(double target) {
 
 /// Mehrotra's target: the better the step towards 0 would be, the nearer.
 double SpeedProblem::look_ahead(double now) {
-    find_step<false>(0);
     const Parts part = find_changes<false>(0);
-    double then = 0;
-    for (std::size_t r = 0; r < count; ++r) {
-        Dual& dual = duals[r];
-        for (std::size_t side = 0; side < 2; ++side) {
-            const double ds = dual.slack_change[side], dw = dual.weight_change[side];
-            then += (dual.slack[side] + part.primal * ds) * (dual.weight[side] + part.dual * dw);
-            dual.product[side] = ds * dw;
-        }
-    }
+    const double then = now + part.primal * both(part.by_slack) + part.dual * both(part.by_weight) +
+                        part.primal * part.dual * both(part.by_both);
     const double share = then / now;
     return share * share * share * now;
 }
 
 void SpeedProblem::go(const Parts& part) {
     for (std::size_t r = 0; r < count; ++r) {
-        Dual& dual = duals[r];
-        for (std::size_t side = 0; side < 2; ++side) {
-            dual.slack[side] += part.primal * dual.slack_change[side];
-            dual.weight[side] += part.dual * dual.weight_change[side];
-        }
+        duals[r].slack += part.primal * duals[r].slack_change;
+        duals[r].weight += part.dual * duals[r].weight_change;
     }
     for (std::size_t k = 1; k + 1 < n; ++k) b[k] += part.primal * step[k];
     find_nodes();
     renew_rows();
+}
+
+SpeedProblem::Progress SpeedProblem::progress() const {
+    Sides gap{};
+    double residual = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+        const Sides slack = duals[r].slack, off = rows[r].value - 1 + slack;
+        gap += slack * duals[r].weight;
+        residual = std::max({residual, off[0], off[1]});
+    }
+    return {both(gap), residual};
 }
 
 /// What is next to the greatest velocity along a way is run along with exactly that.
@@ -379,7 +447,7 @@ void SpeedProblem::settle() {
 bool SpeedProblem::iterate() {
     constexpr double near = 2e-4;     ///< to the least time, as a part of the first guess
     constexpr double hopeless = 0.2;  ///< of a gap that is not met any more
-    constexpr double nearly_kept = 1e-5, far_off = 1e-2, beyond = 5, hardly = 2e-4;
+    constexpr double nearly_kept = 1e-4, far_off = 1e-2, beyond = 5, hardly = 2e-4;
     constexpr int most_steps = 32, soon = 14, most_idle = 2;
     double first = 1;
     int idle = 0;
@@ -391,9 +459,11 @@ bool SpeedProblem::iterate() {
             return false;
         assemble();
         if (!factor()) return false;
+        solve_bands();
         const double target =
             std::max(look_ahead(now.gap), 0.1 * near) / static_cast<double>(count);
-        find_step<true>(target);
+        correct(target);
+        solve_bands();
         const Parts part = find_changes<true>(target);
         idle = part.primal < hardly && now.residual > far_off ? idle + 1 : 0;
         go(part);

@@ -47,32 +47,36 @@ class SpeedProblem {
   private:
     using Triple = std::array<double, 3>;
 
-    /// A linear function of b[k-1], b[k], b[k+1] that is to stay within -1 and 1, or below 1; where
-    /// `falls` is not 0 that bound becomes less as w rises.
+    /// Both sides of a row, -1 and 1.
+    typedef double Sides [[gnu::vector_size(16)]];
+
+    /// A linear function of w'', w' and w that is to stay within -1 and 1, and its negative.
     struct Row {
-        Triple gradient{}, falls{};
-        double value = 0;
-        Triple factors{};  ///< of what is limited in terms of w and its derivatives
-        double limit = 0;  ///< of that
-        bool is_one_sided = false;
+        Sides slope, rise, energy;  ///< by w'', w' and w
+        Sides value;
     };
 
-    /// The rows of one k, one behind the other.
-    struct Rows {
-        std::size_t first = 0;                     ///< of node k and of b[k]
-        std::size_t left = 0, right = 0, end = 0;  ///< of the jerk at both ends of interval k
+    /// Rows that know w'', w' and w of one place, linear functions of b[k-1], b[k] and b[k+1]. What
+    /// they say is multiplied by `scale`; their bounds become less by `falls` times what w rises.
+    struct Group {
+        std::size_t first = 0, end = 0;
+        Triple slope{}, rise{}, energy{};
+        double scale = 1, falls = 0;
     };
+    using Squares = std::array<double, 6>;
+    enum Place : std::size_t { at_node, in_middle, at_left, at_right, places };
 
     /// Slack and multiplier of both sides of a row, what a step changes them by, and the product of
     /// those changes.
     struct Dual {
-        std::array<double, 2> slack{}, weight{}, inverse{}, slack_change{}, weight_change{},
-            product{};
+        Sides slack, weight, inverse, slack_change, weight_change, product;
     };
 
-    /// How far along a step.
+    /// How far along a step, and what the sum of slacks times multipliers becomes by `primal`, by
+    /// `dual` and by their product.
     struct Parts {
         double primal = 1, dual = 1;
+        Sides by_slack{}, by_weight{}, by_both{};
     };
 
     /// How far from the least time and from the limits.
@@ -93,32 +97,36 @@ class SpeedProblem {
     std::array<SpeedEnd, most_speed_intervals + 1> nodes{};
     std::array<Weights, most_speed_intervals + 1> weights{};
     std::array<double, most_speed_intervals> guess{}, b{}, step{}, diagonal{}, next{}, second{},
-        right{}, l1{}, l2{};
+        least_time{}, right{}, l1{}, l2{};
     std::array<Row, most_rows> rows;
     std::array<Dual, most_rows> duals;
-    std::array<Rows, most_speed_intervals> rows_of{};
+    std::array<std::array<Group, places>, most_speed_intervals> groups{};
     std::size_t count = 0;
     bool is_warm = false;
 
     void find_nodes();
+    void find_groups();
     bool find_rows();
-    void add(const Row& row);
+    void add(double slope, double rise, double energy);
+    void add_velocity(double fastest);
     void add_rows_at_node(std::size_t k);
-    void add_rows_of_jerk(std::size_t k, bool at_left);
+    void add_rows_of_jerk(std::size_t k, Place at);
     void renew_rows();
-    void renew_rows_of_jerk(std::size_t k, bool at_left);
+    void renew(const Group& group, double slope, const SpeedEnd& at);
     void begin();
     void begin_again();
-    Progress progress() const;
+    void begin_bands();
     void assemble();
+    void add_squares(std::size_t k, const Group& group, const Squares& sums);
+    void add_pulls(std::size_t k, const Group& group, const Triple& sums);
     bool factor();
+    void correct(double target);
     void solve_bands();
-    template <bool corrects>
-    void find_step(double target);
     template <bool corrects>
     Parts find_changes(double target);
     double look_ahead(double now);
     void go(const Parts& part);
+    Progress progress() const;
     void settle();
     bool iterate();
     Triple around(const std::array<double, most_speed_intervals>& values, std::size_t k) const;

@@ -237,7 +237,7 @@ std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point
 void PathPlanner::begin(double name, const PathVector& start) {
     name_ = name;
     from_ = start_ = start;
-    has_bad_line_ = false;
+    has_bad_line_ = has_too_many_rows_ = false;
     path_ = {};
     waiting_.clear();
     next_ = 0;
@@ -253,7 +253,7 @@ void PathPlanner::lay(std::string& rows) {
     const bool is_spline = waiting_[k].kind >= PathPointKind::spline;
     const std::uint64_t needed = is_spline ? most_spline_parts : most_transition_parts;
     if (path_.count + needed + 1 > ring_.size()) run(rows, path_.count + needed + 1 - ring_.size());
-    if (fault_ != PathFault::none || interrupt_requested) return;
+    if (fault_ != PathFault::none || has_too_many_rows_ || interrupt_requested) return;
     PathRowCurves curves;
     std::size_t count = 0;
     const PathCurve* const before =
@@ -281,6 +281,8 @@ void PathPlanner::append(const PathCurve& curve) {
 void PathPlanner::run(std::string& rows, std::uint64_t piece) {
     const auto is_there = [&] { return path_.first >= piece || path_.finished(); };
     while (!is_there() && fault_ == PathFault::none && !interrupt_requested) {
+        has_too_many_rows_ = takes_too_many_rows();
+        if (has_too_many_rows_) return;
         const double sample = static_cast<double>(samples_) * options_.every;
         if (options_.every > 0 && !(duration_ < sample)) {
             path_.advance_to(ring_, 0, piece);
@@ -294,6 +296,13 @@ void PathPlanner::run(std::string& rows, std::uint64_t piece) {
         duration_ = is_sampled ? sample : duration_ + elapsed;
         if (path_.lost || !std::isfinite(duration_)) fault_ = PathFault::not_finite;
     }
+}
+
+/// By what is planned: nobody has room for so many.
+bool PathPlanner::takes_too_many_rows() const {
+    constexpr double most_rows = 1e12;
+    return options_.every > 0 &&
+           duration_ + (path_.leg.duration() - path_.time) > most_rows * options_.every;
 }
 
 void PathPlanner::write_sample(double time, std::string& rows) const {
@@ -310,8 +319,10 @@ void PathPlanner::end(std::string& rows) {
     if (!name_) return;
     while (next_ < waiting_.size() && !has_bad_line_) lay(rows);
     if (!has_bad_line_) run(rows, Path::to_end);
-    const bool ok = fault_ == PathFault::none && !has_bad_line_;
-    const std::string_view why = has_bad_line_ ? "bad_line" : text_of(fault_);
+    const bool ok = fault_ == PathFault::none && !has_bad_line_ && !has_too_many_rows_;
+    const std::string_view why = has_bad_line_        ? "bad_line"
+                                 : has_too_many_rows_ ? "it takes more than 1e12 rows"
+                                                      : text_of(fault_);
     if (options_.every > 0 && ok && path_.finished() && path_.count > 0)
         write_sample(duration_, rows);
     if (options_.every == 0) {
