@@ -175,11 +175,20 @@ void write_of_codesys(std::byte* to, T value) {
     set_word(to, 0, static_cast<std::uint64_t>(out - first));
 }
 
+/// A value that is not finite, as Siemens has it.
+template <class T>
+void write_no_number(std::byte* to, T value) {
+    const std::string_view text = std::isnan(value) ? "NaN" : value < T{} ? "-INF" : "INF";
+    std::ranges::copy(text, reinterpret_cast<char*>(to + 8));
+    set_word(to, 0, text.size());
+}
+
 }  // namespace
 
 template <class T>
 void write_real(std::byte* to, T value, RealForm form) {
     if (form == RealForm::of_codesys) return write_of_codesys(to, value);
+    if (form == RealForm::exponent && !std::isfinite(value)) return write_no_number(to, value);
     if (form == RealForm::shortest || !std::isfinite(value)) return write_number(to, value, false);
     form == RealForm::rounded ? write_rounded(to, value) : write_exponent(to, value);
 }
