@@ -20,6 +20,7 @@ Slot emit_fraction(Emission& e) {
 }
 
 Slot emit_whole(Emission& e) {
+    if (e.type().is_real()) return e.result(e.call.standard->op, e.value(0));
     const Slot whole = e.emit(e.call.standard->op, e.value(0));
     const Place& place = e.call.place;
     const Dialect& dialect = place.dialect();
@@ -125,8 +126,8 @@ constexpr StandardFunction numbers[] = {
     {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power, Eno::valid},
     whole("TRUNC(IN: ANY_REAL): ANY_INT", "the whole number towards 0", Op::truncate),
     whole("ROUND(IN: ANY_REAL): ANY_INT", "the nearest whole number; of two the even one", Op::round),
-    whole("FLOOR(IN: ANY_REAL): ANY_INT", "the greatest whole number that is not above IN", Op::floor),
-    whole("CEIL(IN: ANY_REAL): ANY_INT", "the least whole number that is not below IN", Op::ceil),
+    whole("FLOOR(IN: ANY_REAL): ANY_INT", "the greatest whole number that is not above IN; in CODESYS and TwinCAT an LREAL where no integer is due", Op::floor),
+    whole("CEIL(IN: ANY_REAL): ANY_INT", "the least whole number that is not below IN; in CODESYS and TwinCAT an LREAL where no integer is due", Op::ceil),
     {"MIN(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the least of its arguments",
      Typing::common, emit_extremum, Op::min_signed, Eno::valid},
     {"MAX(IN1, IN2, ...: ANY_ELEMENTARY): ANY_ELEMENTARY", "the greatest of its arguments",
