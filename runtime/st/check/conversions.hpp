@@ -85,11 +85,6 @@ void unite_texts(Checking& c, Expression*& a, Expression*& b);
 /// `1.0E300` beside a REAL: both are LREALs, in CODESYS where a REAL is due, too.
 bool is_beyond_single(const Expression& e, const Type& other, const Type* expected);
 
-/// What a call's arguments from `first` on are, whole numbers without a type, where a real one is
-/// due: what is made of them is divided as whole numbers are, so they stay such in a type that
-/// holds them, all of which the real one holds.
-const Type& whole_of_literals(const Expression& call, std::size_t first, const Type& real);
-
 /// Gives a number without type that of the other one, if it fits.
 bool make_concrete(Checking& c, Expression*& e, const Type& other);
 

@@ -225,16 +225,4 @@ Expression* list_of_dtl(Checking& c, const Expression& literal, const Type& type
     return list;
 }
 
-const Type& whole_of_literals(const Expression& call, std::size_t first, const Type& real) {
-    const auto holds = [&](const Type& type) {
-        return std::all_of(call.arguments.begin() + static_cast<std::ptrdiff_t>(first),
-                           call.arguments.end(), [&](const Argument& argument) {
-                               const Wide value = argument.value->constant.integer;
-                               return value >= smallest(type) && value <= largest(type);
-                           });
-    };
-    const bool may_be_long = !is_single(real) && holds(dint_type);
-    return holds(int_type) ? int_type : may_be_long ? dint_type : real.plain();
-}
-
 }  // namespace lineshaft::st

@@ -20,19 +20,60 @@ bool is_shifted_number(const Expression& e) {
            e.place.dialect().is_loose;
 }
 
-/// `w AND NOT 16#FF`, `w OR SHL(1, i)`: the mask is as wide as what it is for.
-void check_masks(Checking& c, Expression& e, const Type* expected) {
-    const auto is_mask = [](const Expression& o) {
-        return (o.kind == E::unary && o.op == Word::not_ && o.operands[0]->kind == E::constant) ||
-               is_shifted_number(o);
+/// `SEL(b, 16#0, 16#1)`, `MAX(1, 2)`, `EXPT(2, 5)`
+bool is_call_of_literals(const Expression& e) {
+    if (e.kind != E::call || e.operands[0]->kind != E::name || e.arguments.empty()) return false;
+    const StandardFunction* function = find_standard_function(e.operands[0]->token.text);
+    if (!function || e.place.dialect().literals_suit_their_use) return false;
+    const bool chooses = function->typing == Typing::chosen;
+    const auto is_whole = [](const Argument& argument) {
+        const Expression* given = argument.value;
+        return given && given->kind == E::constant && given->token.word == Word::integer;
     };
+    const bool is_open = chooses || function->typing == Typing::common ||
+                         (function->typing == Typing::operation && function->word == Word::power);
+    return is_open && std::all_of(e.arguments.begin() + chooses, e.arguments.end(), is_whole);
+}
+
+/// `2 ** 5`
+bool is_power_of_literals(const Expression& e) {
+    return e.kind == E::binary && e.op == Word::power && e.operands[0]->kind == E::constant &&
+           e.operands[1]->kind == E::constant;
+}
+
+/// Numbers without a type that are as wide as what they are for.
+bool is_mask(const Expression& e) {
+    if (e.kind == E::unary) return e.op == Word::not_ && e.operands[0]->kind == E::constant;
+    if (e.kind == E::call) return is_shifted_number(e) || is_call_of_literals(e);
+    if (e.kind != E::binary || !is_logic(e.op)) return is_power_of_literals(e);
+    const Expression &left = *e.operands[0], &right = *e.operands[1];
+    return (is_mask(left) && (is_mask(right) || right.kind == E::constant)) ||
+           (is_mask(right) && left.kind == E::constant);
+}
+
+/// All of its numbers are of the type.
+bool suits(Checking& c, Expression& mask, const Type* type) {
+    if (!type || mask.kind != E::call || !is_call_of_literals(mask)) return true;
+    const bool chooses =
+        find_standard_function(mask.operands[0]->token.text)->typing == Typing::chosen;
+    return std::all_of(
+        mask.arguments.begin() + chooses, mask.arguments.end(), [&](Argument& argument) {
+            const Wide value = check(c, argument.value) ? argument.value->constant.integer : 0;
+            const bool is_bit = type->kind == Kind::boolean && (value == 0 || value == 1);
+            return is_bit || (value >= smallest(*type) && value <= largest(*type));
+        });
+}
+
+/// `w AND NOT 16#FF`, `w OR SHL(1, i)`, `w OR SEL(b, 1, 2)`: the mask is as wide as what it is for.
+void check_masks(Checking& c, Expression& e, const Type* expected) {
     for (const int i : {0, 1}) {
-        if (!is_mask(*e.operands[i]) || is_mask(*e.operands[1 - i])) continue;
-        const Type* other = check(c, e.operands[1 - i]);
-        const bool has_width =
-            other && (other->kind == Kind::bits ||
-                      (other->kind == Kind::integer && e.operands[i]->kind == E::call));
-        check(c, e.operands[i], has_width ? other : expected);
+        Expression *&mask = e.operands[i], *&beside = e.operands[1 - i];
+        if (!is_mask(*mask)) continue;
+        const Type* other = is_mask(*beside) ? nullptr : check(c, beside);
+        const bool has_width = other && (other->kind == Kind::bits ||
+                                         (other->kind == Kind::integer && mask->kind == E::call));
+        const Type* due = has_width && suits(c, *mask, other) ? other : expected;
+        check(c, mask, suits(c, *mask, due) ? due : nullptr);
     }
 }
 
@@ -230,23 +271,27 @@ bool may_be_single(const Type& a, const Type& b, bool is_due) {
     return fits(a) && fits(b) && (is_due || is_single(a) || is_single(b));
 }
 
-/// The power of two whole numbers without a type is a number without one, too: a real one, but
-/// where a whole one is due. Empty: it is not known, or has too many digits.
-std::optional<const Type*> fold_power(Checking& c, Expression*& e, const Type* expected) {
-    const Expression &left = *e->operands[0], &right = *e->operands[1];
-    const bool is_whole = is_constant(left) && is_constant(right) &&
-                          left.type->kind == Kind::any_integer &&
-                          right.type->kind == Kind::any_integer && right.constant.integer >= 0;
-    if (!is_whole || (right.constant.integer > 64 && left.constant.integer > 1)) return {};
+/// A power of two whole numbers without a type: whole where no real number is due. Empty: it is
+/// none, or is not known yet.
+std::optional<const Type*> check_whole_power(Checking& c, Expression*& e, const Type* expected) {
+    const Expression &base = *e->operands[0], &exponent = *e->operands[1];
+    const auto is_whole = [](const Expression& o) {
+        return is_constant(o) && o.type->kind == Kind::any_integer;
+    };
+    if (!is_whole(base) || !is_whole(exponent) || exponent.constant.integer < 0) return {};
     constexpr Wide most = Wide{1} << 64;
     Wide value = 1;
-    for (Wide i = 0; i < right.constant.integer && value < most && value > -most; ++i)
-        value = product(value, left.constant.integer);
-    if (value >= most || value <= -most)
-        return c.fail(code::value_out_of_range, e->place, "the result is out of range");
-    if (!expected || expected->is_real())
-        return become(c, e, any_real_type, {.real = static_cast<double>(value)});
-    return become(c, e, any_integer_type, {.integer = value});
+    for (Wide i = 0; i < exponent.constant.integer && value < most && value > -most; ++i)
+        value = product(value, base.constant.integer);
+    if (exponent.constant.integer > 64 && base.constant.integer > 1) return {};
+    const bool is_beyond = value >= most || value <= -most;
+    if (e->place.dialect().literals_suit_their_use || (expected && !expected->is_real())) {
+        if (is_beyond)
+            return c.fail(code::value_out_of_range, e->place, "the result is out of range");
+        return become(c, e, any_integer_type, {.integer = value});
+    }
+    if (is_beyond) return {};
+    return become(c, e, any_real_type, {.real = static_cast<double>(value)});
 }
 
 const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
@@ -256,7 +301,7 @@ const Type* check_power(Checking& c, Expression*& e, const Type* expected) {
         if (!operand->type->is_number())
             return c.fail(code::type_does_not_fit, operand->place,
                           fmt::format("'**' does not go with {}", describe(*operand->type)));
-    if (const auto folded = fold_power(c, e, expected)) return *folded;
+    if (const auto whole = check_whole_power(c, e, expected)) return *whole;
     const bool is_due = expected && is_single(*expected),
                is_wide = e->place.dialect().real_literals_are_lreal;
     const bool narrow = is_wide ? are_single(*left->type, *right->type)

@@ -174,7 +174,11 @@ const Type* check_member(Checking& c, Expression*& e) {
 const Type* check_index(Checking& c, Expression*& node) {
     Expression& e = *node;
     const Type* type = check(c, e.operands[0]);
-    for (Argument& argument : e.arguments) check(c, argument.value);
+    for (Argument& argument : e.arguments) {
+        const bool is_power =
+            argument.value->kind == E::binary && argument.value->op == Word::power;
+        check(c, argument.value, is_power ? &lint_type : nullptr);
+    }
     for (Argument& argument : e.arguments) {
         if (!type) return nullptr;
         if (type->is_pointer()) return check_pointer_index(c, node);

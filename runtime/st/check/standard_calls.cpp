@@ -92,8 +92,9 @@ bool order_arguments(Checking& c, Expression*& e, const StandardFunction& f) {
     for (int i = 0; i < count; ++i) {
         const Argument& argument = call.arguments[static_cast<std::size_t>(i)];
         const bool is_simatic_ax = lower(argument.name.text).starts_with("string");
-        const bool is_vendors =
-            f.typing == Typing::texts && (call.place.dialect().is_loose || is_simatic_ax);
+        const bool is_loose = call.place.dialect().is_loose;
+        const bool is_vendors = (f.typing == Typing::texts && (is_loose || is_simatic_ax)) ||
+                                (f.typing == Typing::real && is_loose);
         const auto is_called = [&](const std::string& name) {
             return same_name(name, argument.name.text) ||
                    (is_vendors && same_name(name, standard_argument_name(argument.name.text)));

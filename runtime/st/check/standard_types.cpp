@@ -5,6 +5,7 @@
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/open_arrays.hpp"
 #include "runtime/st/check/references.hpp"
+#include "runtime/st/check/untyped_arguments.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
@@ -191,27 +192,6 @@ const Type* common_of(const Type& one, const Type& two, const Type& real, const 
     return common ? common : common_number(a, b, place);
 }
 
-/// `b := MOVE(1);`: 0 and 1 are values of BOOL as well.
-bool are_bits(const Expression& call, std::size_t first) {
-    return std::all_of(call.arguments.begin() + static_cast<std::ptrdiff_t>(first),
-                       call.arguments.end(), [](const Argument& argument) {
-                           const Expression& value = *argument.value;
-                           return is_constant(value) && value.type->is_any() &&
-                                  !value.type->is_real() &&
-                                  (value.constant.integer == 0 || value.constant.integer == 1);
-                       });
-}
-
-/// What a literal as `0.1` among the arguments is beside an integer.
-const Type& real_of_literals(const Expression& call, std::size_t first, const Type* expected) {
-    const auto begin = call.arguments.begin() + static_cast<std::ptrdiff_t>(first);
-    const bool is_of_single =
-        std::any_of(begin, call.arguments.end(),
-                    [](const Argument& argument) { return is_single(*argument.value->type); });
-    const bool is_double = !is_of_single && makes_lreal_of_literals(call.place, expected);
-    return is_double ? lreal_type : real_type;
-}
-
 /// The type that all arguments from `first` on have in common, which they become.
 const Type* unite_from(Checking& c, Expression& call, std::size_t first, const Type* expected) {
     const Type* common = &given_type(call, first);
@@ -224,11 +204,9 @@ const Type* unite_from(Checking& c, Expression& call, std::size_t first, const T
                       "convert them");
     const bool is_bit = expected && expected->kind == Kind::boolean && are_bits(call, first);
     const bool is_wanted = is_bit || (expected && (expected->is_number() || expected->is_bits()));
-    const bool is_whole = common->kind == Kind::any_integer && expected && expected->is_real();
-    if (is_whole)
-        common = &whole_of_literals(call, first, *expected);
-    else if (common->is_any() && is_wanted)
-        common = &expected->plain();
+    if (common->is_any() && is_wanted)
+        common = common->is_real() ? &expected->plain()
+                                   : &type_of_literals(call, first, expected->plain());
     if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
     const auto is_beyond = [&](const Argument& argument) {
         return is_beyond_single(*argument.value, *common, expected);

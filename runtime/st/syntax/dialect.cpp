@@ -100,6 +100,7 @@ const Dialect matiec = [] {
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
     made.real_literals_are_lreal = false;
+    made.literals_suit_their_use = true;
     made.beyond_type = BeyondType::fault;
     made.charts = ChartRules::matiec;
     made.other_choice = OtherChoice::initial;
@@ -134,7 +135,8 @@ const Dialect scl = {.sign_precedes_power = false,
                      .by_zero = ByZero::is_zero,
                      .times_count_ms = true,
                      .texts_are_windows_1252 = true,
-                     .characters_may_be_missing = true};
+                     .characters_may_be_missing = true,
+                     .literals_suit_their_use = true};
 
 /// `RESOURCE Res0 ON PLC` stands in a line of its own.
 static bool is_of_matiec(std::string_view text) {

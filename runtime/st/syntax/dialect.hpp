@@ -98,6 +98,8 @@ struct Dialect {
     bool inputs_may_be_left_out = false;     ///< at the end of a call by position
     bool literals_are_characters = false;    ///< TO_INT('0') is 48, of the CHAR, else 0
     bool characters_may_be_missing = false;  ///< text[0] is read as $00 and not written, or a fault
+    bool literals_suit_their_use = false;    ///< SEL(b, 1, 3) is real where that is due, and
+                                             ///< EXPT(2, 3) whole; else the other way
 };
 
 /// IEC 61131-3:2013, the same as SIMATIC AX compiles it, what B&R declares in files of its own,

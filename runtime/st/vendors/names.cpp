@@ -53,7 +53,7 @@ constexpr Renamed parts[] = {{"r", " reset "},
                              {"enablepositive", " enable_positive "},
                              {"enablenegative", " enable_negative "}};
 
-constexpr Renamed arguments[] = {{"in", " str "},
+constexpr Renamed arguments[] = {{"in", " str lr_in "},
                                  {"in1", " str1 string1 "},
                                  {"in2", " str2 string2 "},
                                  {"in3", " string3 "},
