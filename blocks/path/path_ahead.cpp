@@ -197,20 +197,25 @@ bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain
         chain.base = chain.end = base;
         legs = chain.add(outlook, pieces, leg, since, legs);
         if (legs == 0 || !chain.is_curved) return false;
-        PathCourse sooner;
-        if (find_optimum(pieces, chain.course, base, outlook.factor, sooner) &&
-            sooner.duration <= worth * chain.course.duration) {
+        PathCourse found;
+        const bool is_found = find_optimum(pieces, chain.course, base, outlook.factor, found);
+        if (is_found && found.duration <= worth * chain.course.duration) {
             leg.plan = {};
-            leg.course = sooner;
+            leg.course = found;
             leg.base = base;
             leg.end = chain.end;
             leg.goal = chain.goal;
-            leg.ripe = ripe_at(sooner);
+            leg.ripe = ripe_at(found);
             vain.legs = std::max(2 * legs, fewest);
             return true;
         }
-        if (legs <= fewest) {
-            vain = {0.5 * (base + chain.end), fewest};
+        if (is_found && since > 0) {
+            constexpr double little = 0.125;
+            vain.until = base + little * (chain.end - base);
+            return false;
+        }
+        if (is_found || legs <= fewest) {
+            vain = {0.5 * (base + chain.end), std::max(legs / 2, fewest)};
             return false;
         }
     }

@@ -166,7 +166,7 @@ bool Search::try_ends(PathCourse& out, bool& ends_fit) {
                          {energy(last), -last.acceleration}, {mesh.energies.data(), mesh.count});
     for (int round = 0; round < most_rounds; ++round) {
         if (!problem.solve() || !write(problem, out)) return false;
-        if (keeps_limits(pieces, out, base, quotients)) return out.duration < guess.duration;
+        if (keeps_limits(pieces, out, base, quotients)) return true;
         if (!is_tightened(out)) return ends_fit = false;
     }
     return false;
