@@ -386,9 +386,16 @@ static bool is_same_object(const Expression& target, const Expression& value) {
            target.variable == value.variable;
 }
 
-/// The axis links what a command of it has told it, so no other is that command.
-static bool is_linked(const Type& type) {
-    return type.kind == Kind::standard && (type.is_object() || type.standard->add_links);
+/// The axis links what a command of it has told it, so no other is that command: what has one is
+/// not copied.
+static bool has_command(const Type& type) {
+    const auto has = [](const Variable* part) {
+        return part->space == Space::frame && part->type && has_command(*part->type);
+    };
+    if (type.kind == Kind::array) return has_command(*type.element);
+    if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
+    if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
+    return type.kind == Kind::standard && !type.is_object() && type.standard->add_links;
 }
 
 /// An instance takes another one of its block; of one that derives from it what the block has. In
@@ -397,7 +404,7 @@ static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
     const Type& type = *given->type;
     if (block.kind == Kind::standard)
         return same_type(block, type) && is_place(*given) && given->place.dialect().is_loose &&
-               !is_linked(block);
+               !block.is_object();
     if (same_type(block, type))
         return is_place(*given) || given->kind == E::call || given->kind == E::self;
     const bool derives = type.kind == Kind::block && is_a(*type.routine, *block.routine);
@@ -438,14 +445,16 @@ void check_assignment(Checking& c, Statement*& s) {
     const bool is_told = s->value->kind == E::list || !type;
     if (is_told || (!begins && !check_target(c, *s->target)) || !s->value->type) return;
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
-    if (type->is_instance() && s->op == Word::assign && is_given_whole(c, s->value, *type))
-        return begin_both(c, s);
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));
-    if (type->is_instance())
+    const bool is_linked = has_command(*type);
+    if (!is_linked && type->is_instance() && s->op == Word::assign &&
+        is_given_whole(c, s->value, *type))
+        return begin_both(c, s);
+    if (is_linked || type->is_instance())
         return void(c.fail(code::cannot_be_assigned, s->place,
-                           is_linked(*type) ? "a command of an axis is not assigned as a whole"
-                                            : "an instance is not assigned as a whole",
+                           is_linked ? "a command of an axis is not assigned as a whole"
+                                     : "an instance is not assigned as a whole",
                            "assign its inputs one by one"));
     coerce(c, s->value, *type);
 }

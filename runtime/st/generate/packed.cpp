@@ -123,7 +123,7 @@ Location packed_element(Writing& w, Location at, const Expression& e) {
             continue;
         }
         const IndexTable made{array.lower, array.count(), stride};
-        const Slot given = value(w, number), before = at.packed->index;
+        const Slot given = looked_at(w, number), before = at.packed->index;
         at.packed->index = w.emit(Op::index, none, given, w.table(made));
         if (before != none)
             at.packed->index = w.emit(Op::offset_by, none, before, at.packed->index);

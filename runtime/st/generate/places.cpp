@@ -111,7 +111,7 @@ Location element(Writing& w, Location at, const Expression& e) {
                          : behind(at, place * stride);
         } else {
             const IndexTable made{type->lower, type->count(), stride};
-            const Slot given = value(w, number);
+            const Slot given = looked_at(w, number);
             if (index == none)
                 index = w.emit(Op::index, none, given, table_of(w, made, is_late, type));
             else

@@ -115,10 +115,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
-    // SHL of a number beside one of its own type has the bits of that: `SHL(year, 14) = 0`.
-    const Slot a =
-        is_standard(left, "shl") ? value_before(w, left, right) : wide_value_before(w, left, right);
-    const Slot b = is_standard(right, "shl") ? value(w, right) : wide_value(w, right);
+    const auto [a, b] = compared(w, e);
     const Type& type = right.type->is_unsigned_64() ? *right.type : *left.type;
     if (!is_false_of_nan(e)) return compare(w, e.op, type, a, b, wanted);
     const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);
@@ -252,6 +249,17 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
 bool is_false_of_nan(const Expression& e) {
     return e.op == Word::unequal && e.operands[0]->type->is_real() &&
            e.place.dialect().vendor == Vendor::siemens;
+}
+
+Slot looked_at(Writing& w, const Expression& e) {
+    return is_standard(e, "shl") ? value(w, e) : wide_value(w, e);
+}
+
+std::pair<Slot, Slot> compared(Writing& w, const Expression& e) {
+    const Expression &left = *e.operands[0], &right = *e.operands[1];
+    const bool is_kept = is_standard(left, "shl") || !is_wide(w, left);
+    const Slot first = is_kept ? value_before(w, left, right) : wide_value(w, left);
+    return {first, looked_at(w, right)};
 }
 
 Op comparison_op(Word relation, const Type& type) {

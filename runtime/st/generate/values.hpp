@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/writing.hpp"
 
@@ -16,6 +18,12 @@ void update_timer(Writing& w, const Expression& read);
 bool is_wide(const Writing& w, const Expression& e);
 /// A value as it is reckoned: in 32 bits, of what is not kept in its type before.
 Slot wide_value(Writing& w, const Expression& e);
+
+/// The same of a number that is compared, or an index: SHL has the bits of its type there,
+/// `SHL(year, 14) = 0`.
+Slot looked_at(Writing& w, const Expression& e);
+/// Both sides of a comparison of numbers.
+std::pair<Slot, Slot> compared(Writing& w, const Expression& e);
 
 /// A value that stays what it is while `later` is computed: operands go from left to right.
 Slot value_before(Writing& w, const Expression& e, const Expression& later);

@@ -30,7 +30,7 @@ const Dialect simatic_ax = [] {
 
 const Dialect automation_studio = [] {
     Dialect made = iec;
-    made.capitals_count = made.dint_is_time = made.bool_is_number = true;
+    made.capitals_count = made.dint_is_time = made.bool_is_number = made.bits_count_in_reals = true;
     made.texts_have_any_length = made.commas_may_end_lists = true;
     made.dint_becomes_real = made.lreal_becomes_real = made.enumerations_are_numbers = true;
     made.programs_are_named = false;
