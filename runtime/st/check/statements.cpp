@@ -388,14 +388,19 @@ static bool is_same_object(const Expression& target, const Expression& value) {
 
 /// The axis links what a command of it has told it, so no other is that command: what has one is
 /// not copied.
-static bool has_command(const Type& type) {
-    const auto has = [](const Variable* part) {
-        return part->space == Space::frame && part->type && has_command(*part->type);
+static bool has_command(Checking& c, const Type& type) {
+    if (type.kind == Kind::array) return has_command(c, *type.element);
+    if (type.kind == Kind::standard) return !type.is_object() && type.standard->add_links;
+    if (type.kind != Kind::structure && type.kind != Kind::block) return false;
+    const auto [known, is_new] = c.types_with_commands.try_emplace(&type, false);
+    if (!is_new) return known->second;
+    const auto has = [&](const Variable* part) {
+        return part->space == Space::frame && part->type && has_command(c, *part->type);
     };
-    if (type.kind == Kind::array) return has_command(*type.element);
-    if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
-    if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
-    return type.kind == Kind::standard && !type.is_object() && type.standard->add_links;
+    const bool found = type.kind == Kind::block
+                           ? std::ranges::any_of(all_variables(*type.routine), has)
+                           : std::ranges::any_of(type.members, has);
+    return c.types_with_commands[&type] = found;
 }
 
 /// An instance takes another one of its block; of one that derives from it what the block has. In
@@ -447,7 +452,7 @@ void check_assignment(Checking& c, Statement*& s) {
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));
-    const bool is_linked = has_command(*type);
+    const bool is_linked = has_command(c, *type);
     if (!is_linked && type->is_instance() && s->op == Word::assign &&
         is_given_whole(c, s->value, *type))
         return begin_both(c, s);

@@ -68,7 +68,7 @@ void jump_unless(Writing& w, const Expression& condition, Jumps& to) {
                           !e.operands[0]->type->is_reference() && !is_false_of_nan(e);
     if (!compares) return w.jump(Op::jump_unless, 0, value(w, e), to);
     const Type& type = *e.operands[0]->type;
-    auto [a, b] = compared(w, e);
+    auto [a, b] = sides_of(w, e);
     if (is_exchanged(e.op)) std::swap(a, b);
     w.jump(after(comparison_op(e.op, type), 2), a, b, to);
 }

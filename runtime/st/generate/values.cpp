@@ -115,7 +115,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
-    const auto [a, b] = compared(w, e);
+    const auto [a, b] = sides_of(w, e);
     const Type& type = right.type->is_unsigned_64() ? *right.type : *left.type;
     if (!is_false_of_nan(e)) return compare(w, e.op, type, a, b, wanted);
     const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);
@@ -255,7 +255,7 @@ Slot looked_at(Writing& w, const Expression& e) {
     return is_standard(e, "shl") ? value(w, e) : wide_value(w, e);
 }
 
-std::pair<Slot, Slot> compared(Writing& w, const Expression& e) {
+std::pair<Slot, Slot> sides_of(Writing& w, const Expression& e) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
     const bool is_kept = is_standard(left, "shl") || !is_wide(w, left);
     const Slot first = is_kept ? value_before(w, left, right) : wide_value(w, left);

@@ -23,7 +23,7 @@ Slot wide_value(Writing& w, const Expression& e);
 /// `SHL(year, 14) = 0`.
 Slot looked_at(Writing& w, const Expression& e);
 /// Both sides of a comparison of numbers.
-std::pair<Slot, Slot> compared(Writing& w, const Expression& e);
+std::pair<Slot, Slot> sides_of(Writing& w, const Expression& e);
 
 /// A value that stays what it is while `later` is computed: operands go from left to right.
 Slot value_before(Writing& w, const Expression& e, const Expression& later);
