@@ -38,7 +38,9 @@ void Power::scan(const Scan& now, const Context& context) {
     }
     if (first && !execute) context.instance<Axis>(axis).begin_without_power(context);
     const Axis& seen = context.seen_instance<Axis>(axis);
-    status = seen.state != AxisState::disabled && (execute || seen.switched != 0);
+    const bool is_yet_to_start = seen.started == 0 && seen.needs_power;
+    status =
+        seen.state != AxisState::disabled && !is_yet_to_start && (execute || seen.switched != 0);
 }
 
 std::span<const Field> Stop::fields() {

@@ -81,15 +81,15 @@ struct Expression {
     struct TypeText* of = nullptr;  ///< of a call that takes a type first, as `__NEW(Type, count)`
 
     // Noted by the checker.
-    const Type* type = nullptr;                  ///< null: wrong, already reported
-    Constant constant = {};                      ///< of a constant
-    Conversion conversion = {};                  ///< of what is converted
-    BitRange bits = {};                          ///< of `bit`
-    Variable* variable = nullptr;                ///< that a name or a member means
-    Routine* routine = nullptr;                  ///< that a name means, or a call calls
-    bool is_dispatched = false;                  ///< a call: the instance says which routine
+    const Type* type = nullptr;    ///< null: wrong, already reported
+    Constant constant = {};        ///< of a constant
+    Conversion conversion = {};    ///< of what is converted
+    BitRange bits = {};            ///< of `bit`
+    Variable* variable = nullptr;  ///< that a name or a member means
+    Routine* routine = nullptr;    ///< that a name means, or a call calls
+    bool is_dispatched = false;    ///< a call: the instance says which routine
+    bool has_else = false;         ///< a call of MUX: the last input is taken for a number of none
     const StandardFunction* standard = nullptr;  ///< that a call calls
-    bool has_else = false;  ///< a call of MUX: the last input is taken for a number of none
     const BlockType* called_as = nullptr;  ///< a call: of an IEC_TIMER, which is any of the timers
     Expression* initial = nullptr;         ///< what it is to all of `a, b : INT := 2 + 3`
 
