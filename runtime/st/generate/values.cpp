@@ -1,5 +1,6 @@
 #include "runtime/st/generate/values.hpp"
 
+#include "runtime/st/functions/standard.hpp"
 #include "runtime/st/generate/places.hpp"
 
 namespace lineshaft::st {
