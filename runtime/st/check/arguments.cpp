@@ -125,7 +125,8 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
         if (type && is_variant(*type)) return become_variant(c, value, *type);
         if (type && is_any_input(*type)) return become_any(c, value, *type);
         const Type* given = check(c, value, type);
-        if (given && type && !is_derived(*given, *type)) coerce(c, value, *type);
+        if (!given || !type || refuse_copy_of_command(c, value->place, *type)) return;
+        if (!is_derived(*given, *type)) coerce(c, value, *type);
         return;
     }
     const Type* given = check(c, value, type && type->kind == Kind::handle ? type : nullptr);

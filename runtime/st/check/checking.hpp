@@ -166,8 +166,8 @@ struct Checking {
         bool is_made = false;         ///< something of it is assigned
     } beginning = {};
     std::unordered_set<const Statement*> beginnings = {};  ///< whose targets others may not assign
-    /// Whose constants a member of a structure that a routine writes out may begin with.
     std::unordered_map<const Type*, bool> types_with_commands = {};  ///< structures and blocks
+    /// Whose constants a member of a structure that a routine writes out may begin with.
     std::unordered_map<const Variable*, Routine*> routines_of_members = {};
     /// What members begin with that is no constant: each variable of their type assigns it.
     std::unordered_map<const Variable*, Expression*> begins_of_members = {};

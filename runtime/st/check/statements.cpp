@@ -403,6 +403,13 @@ static bool has_command(Checking& c, const Type& type) {
     return c.types_with_commands[&type] = found;
 }
 
+bool refuse_copy_of_command(Checking& c, Place place, const Type& type) {
+    if (!has_command(c, type)) return false;
+    c.fail(code::cannot_be_assigned, place, "a command of an axis is not copied",
+           "give what has it by VAR_IN_OUT, or assign its inputs one by one");
+    return true;
+}
+
 /// An instance takes another one of its block; of one that derives from it what the block has. In
 /// CODESYS that may be one of the standard's blocks.
 static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
@@ -452,14 +459,12 @@ void check_assignment(Checking& c, Statement*& s) {
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));
-    const bool is_linked = has_command(c, *type);
-    if (!is_linked && type->is_instance() && s->op == Word::assign &&
-        is_given_whole(c, s->value, *type))
+    if (refuse_copy_of_command(c, s->place, *type)) return;
+    if (type->is_instance() && s->op == Word::assign && is_given_whole(c, s->value, *type))
         return begin_both(c, s);
-    if (is_linked || type->is_instance())
+    if (type->is_instance())
         return void(c.fail(code::cannot_be_assigned, s->place,
-                           is_linked ? "a command of an axis is not assigned as a whole"
-                                     : "an instance is not assigned as a whole",
+                           "an instance is not assigned as a whole",
                            "assign its inputs one by one"));
     coerce(c, s->value, *type);
 }

@@ -27,6 +27,9 @@ bool runs_with_pins(Checking& c, Statement*& s);
 /// hung in its place. False if it means itself, and is not checked.
 bool rewrite(Checking& c, Statement*& s);
 
+/// Refuses to copy what has a command of an axis. True: it was told.
+bool refuse_copy_of_command(Checking& c, Place place, const Type& type);
+
 /// `instance.ENO` of a variable of the routine at hand: what EN was in its last call that had one,
 /// and at first TRUE. Null: it is no such variable.
 Variable* enable_flag(Checking& c, const Expression& instance);

@@ -63,12 +63,8 @@ void jump_unless(Writing& w, const Expression& condition, Jumps& to) {
     }
     if (e.kind == Expression::Kind::unary && e.op == Word::not_)
         return w.jump(Op::jump_if, 0, value(w, *e.operands[0]), to);
-    const bool compares = binary && e.op >= Word::less && e.op <= Word::unequal &&
-                          e.operands[0]->type->kind != Kind::text &&
-                          !e.operands[0]->type->is_reference() && !is_false_of_nan(e);
-    if (!compares) return w.jump(Op::jump_unless, 0, value(w, e), to);
-    const Type& type = *e.operands[0]->type;
-    auto [a, b] = sides_of(w, e);
+    if (!compares_numbers(e)) return w.jump(Op::jump_unless, 0, value(w, e), to);
+    auto [a, b, type] = sides_of(w, e);
     if (is_exchanged(e.op)) std::swap(a, b);
     w.jump(after(comparison_op(e.op, type), 2), a, b, to);
 }

@@ -102,6 +102,12 @@ bool is_compared_by_place(const Expression* left, const Expression* right) {
     return left && right && (left->kind == E::self || right->kind == E::self);
 }
 
+/// `<>` of REALs in SCL, where it is FALSE, too, of what is no number.
+bool is_false_of_nan(const Expression& e) {
+    return e.op == Word::unequal && e.operands[0]->type->is_real() &&
+           e.place.dialect().vendor == Vendor::siemens;
+}
+
 Slot comparison(Writing& w, const Expression& e, Slot wanted) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
     const Expression* const first = block_of_reference(left);
@@ -116,8 +122,7 @@ Slot comparison(Writing& w, const Expression& e, Slot wanted) {
         const Slot a = text_before(w, left, right), b = text_address(w, right);
         return compare_texts(w, e.op, a, b, wanted);
     }
-    const auto [a, b] = sides_of(w, e);
-    const Type& type = right.type->is_unsigned_64() ? *right.type : *left.type;
+    const auto [a, b, type] = sides_of(w, e);
     if (!is_false_of_nan(e)) return compare(w, e.op, type, a, b, wanted);
     const Slot below = w.emit(Op::lt_float, none, a, b), above = w.emit(Op::lt_float, none, b, a);
     return w.emit(Op::or_bits, wanted, below, above);
@@ -247,20 +252,24 @@ Slot character(Writing& w, const Expression& e, Slot wanted) {
 
 }  // namespace
 
-bool is_false_of_nan(const Expression& e) {
-    return e.op == Word::unequal && e.operands[0]->type->is_real() &&
-           e.place.dialect().vendor == Vendor::siemens;
-}
-
 Slot looked_at(Writing& w, const Expression& e) {
     return is_standard(e, "shl") ? value(w, e) : wide_value(w, e);
 }
 
-std::pair<Slot, Slot> sides_of(Writing& w, const Expression& e) {
+bool compares_numbers(const Expression& e) {
+    const bool is_relation = e.kind == E::binary && e.op >= Word::less && e.op <= Word::unequal;
+    if (!is_relation || is_false_of_nan(e)) return false;
+    const Type& type = *e.operands[0]->type;
+    return type.kind != Kind::text && !type.is_reference() &&
+           !is_compared_by_place(block_of_reference(*e.operands[0]),
+                                 block_of_reference(*e.operands[1]));
+}
+
+Sides sides_of(Writing& w, const Expression& e) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
     const bool is_kept = is_standard(left, "shl") || !is_wide(w, left);
     const Slot first = is_kept ? value_before(w, left, right) : wide_value(w, left);
-    return {first, looked_at(w, right)};
+    return {first, looked_at(w, right), right.type->is_unsigned_64() ? *right.type : *left.type};
 }
 
 Op comparison_op(Word relation, const Type& type) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <utility>
-
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/writing.hpp"
 
@@ -22,8 +20,14 @@ Slot wide_value(Writing& w, const Expression& e);
 /// The same of a number that is compared, or an index: SHL has the bits of its type there,
 /// `SHL(year, 14) = 0`.
 Slot looked_at(Writing& w, const Expression& e);
-/// Both sides of a comparison of numbers.
-std::pair<Slot, Slot> sides_of(Writing& w, const Expression& e);
+/// A relation that one instruction decides: not one of texts, of references or of instances.
+bool compares_numbers(const Expression& e);
+/// Both sides of such a one, and the type by which they are compared.
+struct Sides {
+    Slot left, right;
+    const Type& type;
+};
+Sides sides_of(Writing& w, const Expression& e);
 
 /// A value that stays what it is while `later` is computed: operands go from left to right.
 Slot value_before(Writing& w, const Expression& e, const Expression& later);
@@ -34,8 +38,6 @@ Op comparison_op(Word relation, const Type& type);
 constexpr bool is_exchanged(Word relation) {
     return relation == Word::greater || relation == Word::greater_or_equal;
 }
-/// `<>` of REALs in SCL, where it is FALSE, too, of what is no number.
-bool is_false_of_nan(const Expression& e);
 /// Whether a relation of two values holds.
 Slot compare(Writing& w, Word relation, const Type& type, Slot a, Slot b, Slot wanted = none);
 
