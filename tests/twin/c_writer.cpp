@@ -612,7 +612,14 @@ class CWriter {
                        value(*target.arguments[0].value), c, target.operands[0]->type->length,
                        line_);
         }
-        assign(place(target), *target.type, *s.value);
+        const Expression& root = root_of(target);
+        if (root.kind != E::deref) return assign(place(target), *target.type, *s.value);
+        const std::string type = c_type(*root.type), from = pointer(*root.operands[0]);
+        known_.emplace_back(&root, fmt::format("(*({}*){}.at)", type, from));
+        const std::string to = place(target);
+        known_.pop_back();
+        assign(to, *target.type, *s.value,
+               fmt::format("twin_reach({}, sizeof({}), {});", from, type, line_));
     }
 
     static std::pair<int, std::string> bits_of(const Expression& e) {
@@ -620,12 +627,17 @@ class CWriter {
         return {first, fmt::format("{:#x}ull", count >= 64 ? ~0ULL : (1ULL << count) - 1)};
     }
 
-    void assign(const std::string& to, const Type& type, const Expression& from) {
-        if (type.is_scalar()) return put("{} = {};", to, value(from));
-        if (type.kind == Kind::text)
-            return put("twin_set(&{}, {}, {});", to, type.length, text(from));
-        const std::string made = aggregate(from);
-        put("memmove(&{0}, &{1}, sizeof {0});", to, made);
+    /// What is `first` comes between the value and where it goes to: a pointer is reached there.
+    void assign(const std::string& to, const Type& type, const Expression& from,
+                const std::string& first = "") {
+        const bool is_text = type.kind == Kind::text;
+        const std::string given = type.is_scalar() ? made(c_type(type), value(from))
+                                  : is_text        ? text(from)
+                                                   : aggregate(from);
+        put("{}", first);
+        if (type.is_scalar()) return put("{} = {};", to, given);
+        if (is_text) return put("twin_set(&{}, {}, {});", to, type.length, given);
+        put("memmove(&{0}, &{1}, sizeof {0});", to, given);
     }
 
     void write_if(const Statement& s) {

@@ -57,6 +57,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     tell_missing_libraries(c);
     finish_image(c);
     order_routines(c);
+    share_eno(c);
     if (out.empty()) warn_of_usings(c), warn_of_unused(c);
     return std::move(c.checked);
 }

@@ -236,7 +236,17 @@ Variable& eno_of(Checking& c, Routine& routine) {
     variable.section = Section::temp;
     variable.initial = make_boolean(c, {}, true);
     routine.names.emplace(variable.text, &variable);
-    return variable;
+    return *(routine.eno = &variable);
+}
+
+void share_eno(Checking& c) {
+    NameSet asked;
+    for (const Routine& routine : c.checked.routines)
+        if (routine.eno && routine.owner) asked.emplace(routine.pou->name.text);
+    if (asked.empty()) return;
+    for (Routine& routine : c.checked.routines)
+        if (routine.is_dispatched && routine.owner && asked.contains(routine.pou->name.text))
+            eno_of(c, routine).used = true;
 }
 
 Block edge_calls(Checking& c, Routine& routine) {

@@ -36,6 +36,8 @@ Variable* enable_flag(Checking& c, const Expression& instance);
 
 /// Siemens' ENO, a flag of each call that begins as TRUE: a caller may take it.
 Variable& eno_of(Checking& c, Routine& routine);
+/// All methods have it that may be found where it is asked for.
+void share_eno(Checking& c);
 
 // enable_outputs.cpp
 

@@ -47,7 +47,7 @@ std::uint32_t slot_in_signature(Writing& w, const Routine& method, const Variabl
     std::uint32_t at = 0;
     for (const bool given : {true, false})
         for (const Variable& variable : method.variables) {
-            if (!is_in_signature(variable, given)) continue;
+            if (!is_in_signature(method, variable, given)) continue;
             if (&variable == &parameter) return at;
             at += slots_in_frame(w, variable);
         }

@@ -79,10 +79,11 @@ std::uint32_t slots_in_frame(Writing& w, const Variable& variable) {
     return is_reference ? slots_of_in_out(w, variable) : own;
 }
 
-bool is_in_signature(const Variable& variable, bool is_given) {
+bool is_in_signature(const Routine& method, const Variable& variable, bool is_given) {
     const Section section = variable.section;
     return is_given ? section == Section::input || section == Section::in_out
-                    : section == Section::result || section == Section::output;
+                    : section == Section::result || section == Section::output ||
+                          &variable == method.eno;
 }
 
 void forget_places(Writing& w) {
@@ -174,10 +175,10 @@ void lay_out_call(Writing& w, Routine& routine) {
     Routine* block = routine.owner;
     if (block) lay_out(w, *block);
     std::uint32_t at = block ? block->frame : 0;
-    const auto is_given = [](const Variable& v) { return is_in_signature(v, true); };
+    const auto is_given = [&](const Variable& v) { return is_in_signature(routine, v, true); };
     const auto is_kept = [](const Variable& v) { return v.section == Section::kept; };
     const auto is_taken = [&](const Variable& v) {
-        return routine.is_dispatched && is_in_signature(v, false);
+        return routine.is_dispatched && is_in_signature(routine, v, false);
     };
     place_variables(w, routine, at, is_kept);
     place_mark(routine, at);

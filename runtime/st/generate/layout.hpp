@@ -30,7 +30,7 @@ void lay_out(Writing& w, Routine& block);
 /// Those of a variable in its frame.
 std::uint32_t slots_in_frame(Writing& w, const Variable& variable);
 /// It is given to a method, or else taken from it.
-bool is_in_signature(const Variable& variable, bool is_given);
+bool is_in_signature(const Routine& method, const Variable& variable, bool is_given);
 
 /// What is given to a function or a method comes first. A method's frame is a part of its block's.
 void lay_out_call(Writing& w, Routine& routine);
@@ -69,7 +69,7 @@ constexpr std::uint32_t recurring_levels = 500;
 void prepare_dispatch(Writing& w);
 
 /// Where a parameter of a method stands behind its `Routine::first`, the same in all that replace
-/// one another: what is given first, then its result and outputs, whatever its own block is like.
+/// one another: what is given first, then its result, outputs and ENO, whatever its own block is like.
 std::uint32_t slot_in_signature(Writing& w, const Routine& method, const Variable& parameter);
 /// The parameters of a method as they begin, in that order.
 const Writing::Image& signature_image(Writing& w, const Routine& method);
