@@ -8,7 +8,7 @@
 
 #include "runtime/st/code/meaning.hpp"
 #include "runtime/st/code/native/compile.hpp"
-#include "runtime/st/code/native/stencil.hpp"
+#include "runtime/st/code/native/kept.hpp"
 
 namespace lineshaft::st {
 
@@ -48,25 +48,28 @@ namespace {
 /// `jmp *0(%rip)`, and behind it the address of a function that may be far away.
 constexpr unsigned char far_jump[] = {0xFF, 0x25, 0, 0, 0, 0};
 constexpr std::uint64_t far_jump_size = 16;
+/// The load of a real, which as a move between registers would wait for what the register had.
+constexpr unsigned char real_load[] = {0xF2, 0x0F, 0x10};
 
 /// Copies the stencils of all instructions, and fills their holes.
 class Patching {
   public:
-    Patching(const Code& code, Native& native) : code_(code), native_(native) {}
+    Patching(const Code& code, Native& native)
+        : code_(code), native_(native), parts_(parts_of(code)) {}
 
     /// Lays out the far jumps, the constants, the instructions, and what is seldom executed.
     std::uint64_t lay_out() {
         constants_ = far_jump_size * stencil_externals_count;
         std::uint64_t size = (constants_ + stencil_constants_size + 15) / 16 * 16;
         native_.places.reserve(code_.instructions.size() + 1);
-        const auto grow = [&](std::uint64_t by) {
-            native_.places.push_back(static_cast<std::uint32_t>(size));
-            size += by;
-        };
-        for (const Instruction& in : code_.instructions) grow(stencil_of(in).size);
-        grow(0);
+        for (const StencilCopy& part : parts_) {
+            if (part.number == native_.places.size())
+                native_.places.push_back(static_cast<std::uint32_t>(size));
+            size += size_of(part);
+        }
+        native_.places.push_back(static_cast<std::uint32_t>(size));
         cold_ = size;
-        for (const Instruction& in : code_.instructions) size += stencil_of(in).cold_size;
+        for (const StencilCopy& part : parts_) size += part.stencil().cold_size;
         return size;
     }
 
@@ -80,32 +83,97 @@ class Patching {
         }
         std::memcpy(first + constants_, stencil_constants, stencil_constants_size);
         bool fits = true;
-        for (std::size_t i = 0; i < code_.instructions.size(); ++i) fits = write_one(i) && fits;
+        hot_ = native_.places.front();
+        for (const StencilCopy& part : parts_) fits = write_part(part) && fits;
         return fits;
     }
 
   private:
-    static const Stencil& stencil_of(const Instruction& in) {
-        return stencils[static_cast<std::size_t>(in.op)];
+    static std::uint32_t left_out(const StencilCopy& part) {
+        return part.leaves_out_load ? part.stencil().load : 0;
     }
 
-    bool write_one(std::size_t number) {
-        const Stencil& stencil = stencil_of(code_.instructions[number]);
-        const std::uint64_t hot = native_.places[number];
+    static std::uint32_t size_of(const StencilCopy& part) {
+        std::uint32_t size = part.stencil().size - left_out(part);
+        for (const KeptSlot& one : part.loads) size += load_size(one.in);
+        return part.into == no_register ? size : size + move_size(part.into);
+    }
+
+    bool write_part(const StencilCopy& part) {
+        for (const KeptSlot& one : part.loads) write_load(one);
+        const Stencil& stencil = part.stencil();
+        const std::uint32_t skipped = left_out(part);
         const unsigned char* code = stencil_code + stencil.code;
-        std::memcpy(first_ + hot, code, stencil.size);
+        std::memcpy(first_ + hot_, code + skipped, stencil.size - skipped);
         std::memcpy(first_ + cold_, code + stencil.size, stencil.cold_size);
+        begin_ = hot_ - skipped;
+        hot_ += stencil.size - skipped;
+        if (part.into != no_register) write_move(part.into, stencil.result);
         bool fits = true;
-        for (std::uint32_t i = 0; i < stencil.count; ++i) {
-            const Filling& filling = stencil_fillings[stencil.fillings + i];
-            const std::uint64_t place =
-                filling.at < stencil.size ? hot + filling.at : cold_ + filling.at - stencil.size;
-            const std::uint64_t value = value_of(filling, number) +
-                                        static_cast<std::uint64_t>(std::int64_t{filling.addend});
-            fits = fill(filling.width, place, value) && fits;
-        }
+        for (const Filling& filling : part.fillings())
+            if (filling.at >= skipped) fits = fill(part, filling) && fits;
         cold_ += stencil.cold_size;
         return fits;
+    }
+
+    bool fill(const StencilCopy& part, const Filling& filling) {
+        const std::uint32_t size = part.stencil().size;
+        const std::uint64_t place =
+            filling.at < size ? begin_ + filling.at : cold_ + filling.at - size;
+        if (filling.read_as != ReadAs::memory) {
+            const std::uint8_t from = part.sources[static_cast<std::size_t>(filling.hole)];
+            const bool is_word = filling.read_as == ReadAs::word;
+            if (from != no_register && (from < first_real) == is_word) {
+                read_from(from, first_ + place, filling.before);
+                return true;
+            }
+        }
+        const std::uint64_t value =
+            value_of(filling, part) + static_cast<std::uint64_t>(std::int64_t{filling.addend});
+        return fill(filling.width, place, value);
+    }
+
+    /// Lets the instruction with that many bytes before a place read a register instead. What it
+    /// is shorter stands before it, as prefixes that mean nothing there.
+    static void read_from(std::uint8_t from, std::byte* place, std::size_t before) {
+        unsigned char code[16];
+        std::memcpy(code, place - before, before);
+        unsigned char* next = code;
+        std::byte* to = place - before;
+        const bool has_prefix = *next == 0x66 || *next == 0xF2 || *next == 0xF3;
+        const bool is_extended = next[has_prefix] >> 4 == 4;
+        const bool is_load = std::memcmp(code, real_load, sizeof real_load) == 0;
+        for (int i = is_extended ? 4 : 3; i > 0; --i) *to++ = std::byte{0x3E};
+        if (has_prefix) *to++ = std::byte{is_load ? std::uint8_t{0x66} : *next++};
+        next += is_load;
+        const int extension = is_extended ? *next++ : 0x40;
+        *to++ = std::byte(extension | 1);
+        for (; next < code + before - 1; ++next) *to++ = std::byte{*next};
+        if (is_load) to[-1] = std::byte{0x28};
+        *to = std::byte((*next & 0x38) | 0xC0 | (from & 7));
+    }
+
+    void write_load(const KeptSlot& one) {
+        const auto modes = static_cast<unsigned char>(0x87 | (one.in & 7) << 3);
+        const std::uint32_t bytes = 8 * one.slot;
+        if (one.in < first_real)
+            append({0x4C, 0x8B, modes});
+        else
+            append({0xF2, 0x44, 0x0F, 0x10, modes});
+        std::memcpy(first_ + hot_, &bytes, sizeof bytes);
+        hot_ += sizeof bytes;
+    }
+
+    void write_move(std::uint8_t to, std::uint8_t from) {
+        const int late = to & 7, early = from & 7;
+        if (to < first_real)
+            append({0x49, 0x89, static_cast<unsigned char>(0xC0 | early << 3 | late)});
+        else
+            append({0x66, 0x44, 0x0F, 0x28, static_cast<unsigned char>(0xC0 | late << 3 | early)});
+    }
+
+    void append(std::initializer_list<unsigned char> code) {
+        for (const unsigned char byte : code) first_[hot_++] = std::byte{byte};
     }
 
     /// Where a place in the code will be.
@@ -116,8 +184,8 @@ class Patching {
         return reinterpret_cast<std::uint64_t>(&code_.tables.data()[number]);
     }
 
-    std::uint64_t value_of(const Filling& filling, std::size_t number) const {
-        const Instruction& in = code_.instructions[number];
+    std::uint64_t value_of(const Filling& filling, const StencilCopy& part) const {
+        const Instruction& in = part.in;
         const std::uint64_t c = static_cast<std::uint32_t>(in.c);
         switch (filling.hole) {
             case Hole::a_bytes:
@@ -143,12 +211,12 @@ class Patching {
             case Hole::d_table:
                 return address_of_table(in.d);
             case Hole::place_behind:
-                return number + 1;
+                return part.number + 1;
             case Hole::next_instruction:
-                return address(native_.places[number + 1]);
+                return address(hot_);
             case Hole::jump_target:
             case Hole::repeat_target:
-                return address(native_.places[code_.place_of(in.c)]);
+                return address(native_.places[code_.place_of(in.c)] + part.skipped);
             case Hole::called_routine:
                 return address(native_.places[called(in).entry]);
             case Hole::external:
@@ -158,7 +226,7 @@ class Patching {
             case Hole::own_cold:
                 return address(cold_ + filling.number);
             case Hole::own:
-                return address(native_.places[number] + filling.number);
+                return address(begin_ + filling.number);
         }
         return 0;
     }
@@ -178,8 +246,11 @@ class Patching {
 
     const Code& code_;
     Native& native_;
+    std::vector<StencilCopy> parts_;
     std::byte* first_ = nullptr;
-    std::uint64_t constants_ = 0, cold_ = 0;  ///< where they begin; of the instruction at hand
+    std::uint64_t constants_ = 0;
+    std::uint64_t hot_ = 0, cold_ = 0;  ///< how far they are written
+    std::uint64_t begin_ = 0;           ///< where the whole stencil at hand would begin
 };
 
 }  // namespace

@@ -28,19 +28,32 @@ enum class Hole : std::uint8_t {
 /// As the relocations of the object are (x86-64 psABI).
 enum class Width : std::uint8_t { absolute_32, absolute_32_signed, absolute_64, relative_32 };
 
+/// What may stand for a slot that an instruction of the processor reads: nothing else, a register
+/// for words, one for reals.
+enum class ReadAs : std::uint8_t { memory, word, real };
+
 struct Filling {
     std::uint32_t at;  ///< in the stencil's code
     Hole hole;
     Width width;
     std::int32_t addend;
     std::uint32_t number;  ///< of an external; else a place
+    ReadAs read_as;
+    std::uint8_t before;  ///< bytes of the processor's instruction before it
 };
+
+/// A register of the processor: words have the numbers of its instructions, reals those behind.
+inline constexpr std::uint8_t first_real = 16, no_register = 255;
 
 /// Code of an instruction; behind what is executed as a rule stands the rest. Without code the
 /// instruction has none.
 struct Stencil {
     std::uint32_t code, size, cold_size;  ///< in `stencil_code`
     std::uint32_t fillings, count;        ///< in `stencil_fillings`
+    std::uint8_t load, into;  ///< bytes of its beginning, if that loads a slot, into that register
+    std::uint8_t result;  ///< the register that has what it wrote last, to `written`, at its end
+    Hole written;
+    std::uint8_t spoils;  ///< of the registers 8 to 15 of both kinds, a bit each
 };
 
 // What `write_table` writes.

@@ -15,6 +15,7 @@
 
 #include <elf.h>
 
+#include "runtime/st/code/native/decoding.hpp"
 #include "runtime/st/code/native/stencil.hpp"
 #include "runtime/st/code/opcodes.hpp"
 
@@ -131,12 +132,14 @@ class Table {
                         externals_[i].c_str());
         std::puts("\nnamespace lineshaft::st {\n\nconst Stencil stencils[] = {");
         for (const Stencil& s : stencils_)
-            std::printf("{%u, %u, %u, %u, %u},\n", s.code, s.size, s.cold_size, s.fillings,
-                        s.count);
+            std::printf("{%u, %u, %u, %u, %u, %d, %d, %d, Hole{%d}, %d},\n", s.code, s.size,
+                        s.cold_size, s.fillings, s.count, s.load, s.into, s.result,
+                        static_cast<int>(s.written), s.spoils);
         std::puts("};\nconst Filling stencil_fillings[] = {");
         for (const Filling& f : fillings_)
-            std::printf("{%u, Hole{%d}, Width{%d}, %d, %u},\n", f.at, static_cast<int>(f.hole),
-                        static_cast<int>(f.width), f.addend, f.number);
+            std::printf("{%u, Hole{%d}, Width{%d}, %d, %u, ReadAs{%d}, %d},\n", f.at,
+                        static_cast<int>(f.hole), static_cast<int>(f.width), f.addend, f.number,
+                        static_cast<int>(f.read_as), f.before);
         write("stencil_code", code_);
         write("stencil_constants", constants_);
         std::printf("};\nconst std::size_t stencil_constants_size = %zu;\n", constants_.size());
@@ -175,14 +178,23 @@ class Table {
                 }) == 1)
                 hot.resize(last);
         Stencil made{static_cast<std::uint32_t>(code_.size()),
-                     static_cast<std::uint32_t>(hot.size()), 0,
-                     static_cast<std::uint32_t>(fillings_.size()), 0};
+                     static_cast<std::uint32_t>(hot.size()),
+                     0,
+                     static_cast<std::uint32_t>(fillings_.size()),
+                     0,
+                     0,
+                     no_register,
+                     no_register,
+                     Hole::external,
+                     0xFF};
+        look_into(made, hot, found);
         code_.insert(code_.end(), hot.begin(), hot.end());
         if (cold_ != SHN_UNDEF) {
             const Bytes cold = object_.content(cold_);
             for (Filling& filling : fillings(cold_, cold)) {
                 filling.at += made.size;
                 found.push_back(filling);
+                if (filling.hole == Hole::own) made.spoils = 0xFF;  // behind a call
             }
             made.cold_size = static_cast<std::uint32_t>(cold.size());
             code_.insert(code_.end(), cold.begin(), cold.end());
@@ -190,6 +202,65 @@ class Table {
         fillings_.insert(fillings_.end(), found.begin(), found.end());
         made.count = static_cast<std::uint32_t>(found.size());
         stencils_.push_back(made);
+    }
+
+    /// What its registers have at its beginning and its end, and which slots it may as well read
+    /// there; nothing of code that is not understood.
+    static void look_into(Stencil& made, const Bytes& hot, std::vector<Filling>& found) {
+        if (hot.empty() || std::ranges::count(found, Hole::own, &Filling::hole) > 0) return;
+        std::vector<ProcessorInstruction> all;
+        Decoding decoding(hot);
+        for (std::size_t at = 0; at < hot.size(); at += all.back().size) {
+            const auto next = decoding.at(at);
+            if (!next) return;
+            all.push_back(*next);
+        }
+        std::uint8_t spoils = 0;
+        for (const ProcessorInstruction& one : all) {
+            spoils |= one.late_registers();
+            if (Filling* const slot = slot_of(one, found)) look_at(one, *slot);
+        }
+        const auto is_reached = [&](std::size_t first, std::size_t last) {
+            return std::ranges::any_of(all, [&](const ProcessorInstruction& one) {
+                return one.way && first <= *one.way && *one.way <= last;
+            });
+        };
+        const auto goes_on = [](const Filling& f) { return f.hole == Hole::next_instruction; };
+        made.spoils = spoils;
+        const ProcessorInstruction &first = all.front(), &last = all.back();
+        if ((first.loads_word() || first.loads_real()) && slot_of(first, found) &&
+            !is_reached(0, first.size - 1)) {
+            made.load = static_cast<std::uint8_t>(first.size);
+            made.into = register_of(first);
+        }
+        const Filling* const written = slot_of(last, found);
+        if ((last.stores_word() || last.stores_real()) && written && last.named_register() < 8 &&
+            !is_reached(hot.size(), hot.size()) && std::ranges::none_of(found, goes_on)) {
+            made.result = register_of(last);
+            made.written = written->hole;
+        }
+    }
+
+    static std::uint8_t register_of(const ProcessorInstruction& move) {
+        const bool is_real = move.loads_real() || move.stores_real();
+        return static_cast<std::uint8_t>(move.named_register() + (is_real ? first_real : 0));
+    }
+
+    /// The filling of a slot in that instruction.
+    static Filling* slot_of(const ProcessorInstruction& one, std::vector<Filling>& found) {
+        if (!one.has_slot()) return nullptr;
+        const auto it = std::ranges::find_if(found, [&](const Filling& f) {
+            return f.at == one.place_at && f.hole <= Hole::d_bytes && f.addend == 0;
+        });
+        return it == found.end() ? nullptr : &*it;
+    }
+
+    static void look_at(const ProcessorInstruction& one, Filling& slot) {
+        if (one.reads_word())
+            slot.read_as = ReadAs::word;
+        else if (one.reads_real())
+            slot.read_as = ReadAs::real;
+        slot.before = static_cast<std::uint8_t>(one.place_at - one.at);
     }
 
     std::vector<Filling> fillings(std::size_t section, const Bytes& code) {
@@ -208,8 +279,13 @@ class Table {
         if (!widths.contains(type))
             throw std::runtime_error("has an unknown relocation: " + std::to_string(type));
         const Elf64_Sym& symbol = object_.symbols.at(ELF64_R_SYM(relocation.r_info));
-        Filling made{static_cast<std::uint32_t>(relocation.r_offset), Hole::external,
-                     widths.at(type), static_cast<std::int32_t>(relocation.r_addend), 0};
+        Filling made{static_cast<std::uint32_t>(relocation.r_offset),
+                     Hole::external,
+                     widths.at(type),
+                     static_cast<std::int32_t>(relocation.r_addend),
+                     0,
+                     ReadAs::memory,
+                     0};
         const bool is_relative = made.width == Width::relative_32;
         if (symbol.st_shndx == SHN_UNDEF) {
             const std::string name = object_.name(symbol);
