@@ -248,8 +248,10 @@ MotionState Axis::total() const {
 void Axis::advance(const Context& context, std::int64_t now) {
     if (goes_on(now)) return;
     while (has_ended(now)) end_motion(context);
-    if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
+    const bool over_time = added.exists() && added_paused == 0 && !goes_by_way();
+    if (over_time && added_motion.has_ended(now)) end_added(context);
     look(context, now);
+    if (goes_by_way()) watch_beneath(context);
 }
 
 /// What most scans are: a move goes on, with nothing on top of it. False where more than that is
@@ -353,9 +355,10 @@ void Axis::end_leg(const Moment& at) {
     leg.exists = 0;
 }
 
-/// Standing, with nothing to do.
+/// Standing, with nothing to do but for what waits until something moves.
 void Axis::settle() {
-    if (active.exists() || added.exists() || doing != Doing::holding) return;
+    const bool adds = added.exists() && !goes_by_way();
+    if (active.exists() || adds || doing != Doing::holding) return;
     if (velocity_motion.ramp.end.velocity != 0 || lasting != 0) return;
     if (state != AxisState::disabled && state != AxisState::error_stop)
         state = AxisState::standstill;

@@ -134,6 +134,9 @@ struct Axis {
     double added_before = 0;         ///< way from on top that `base` has taken in since an abort
     std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
     std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
+    double added_passed = 0;         ///< of one that goes by way: so much of its plan [s],
+    double added_seen = 0;           ///< and how far the motion beneath was then,
+    double added_beneath = 0;        ///< with which velocity
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
     double goal = 0;                 ///< of `active`, as a position beneath; where it ended
     double origin = 0;               ///< from where the distance of `active` counts, likewise
@@ -228,7 +231,7 @@ struct Axis {
         double taken = 0;          ///< way of `extra` that is in both, and no longer on top
         bool drops_added = false;  ///< what is on top does not go on
     };
-    Start start_of(const Request& request, bool keeps_added) const;
+    Start start_of(const Request& request, bool drops_added) const;
     Start start_again() const;
     bool is_overridden() const;
     Dynamics dynamics_with(const Request& request, const Factors& by) const;
@@ -267,7 +270,8 @@ struct Axis {
     bool is_safe(const MotionState& next);
     bool finds_room(const MotionState& next);
     bool can_brake(const MotionState& from) const;
-    bool leads_inside(const Way& way, double further) const;
+    bool leads_inside(const Way& way, const Range& further) const;
+    Range added_range() const;
     template <class Motion>
     bool leads_inside(const Motion& beneath, const Start& from) const;
     bool goes_on_inside() const;
@@ -278,7 +282,7 @@ struct Axis {
     bool may_begin(const PointMotion& next, const Start& from) const;
     bool may_begin(const VelocityMotion& next, const Start& from) const;
     bool may_follow(const ProfileMotion& next, const Cam& cam, const Start& from) const;
-    bool may_add(const PointMotion& next) const;
+    bool may_add(const PointMotion& next, bool by_way) const;
     bool may_wait(const Context& context, const Request& request) const;
 
     // axis_masters.cpp: what is seen of other axes.
@@ -345,6 +349,7 @@ struct Axis {
     void begin(const Context& context, const Moment& at, Job& job, const Stretch* along = nullptr);
     void begin_next(const Context& context, const Moment& at, const Stretch* rest = nullptr);
     void abort_all(const Context& context, MotionError why = MotionError::none);
+    void abort_beneath(const Context& context, Progress how, MotionError why = MotionError::none);
     void end_waiting(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Running& running, Progress how,
              MotionError why = MotionError::none);
@@ -364,6 +369,14 @@ struct Axis {
     void make_up_for(double missing);
     void take_in(double way);
     void look_at_added(std::int64_t now);
+    bool goes_by_way() const;
+    double beneath() const;
+    MotionState added_by_way() const;
+    MotionState added_over_time(double process_velocity) const;
+    Range range_by_way() const;
+    void watch_beneath(const Context& context);
+    void stop_added(const Context& context);
+    bool keeps_added(const Request& request) const;
     void end_added(const Context& context);
     void clear_added();
 
@@ -374,6 +387,7 @@ struct Axis {
     MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, const Request& request);
+    bool is_at_work() const;
     void keep_directions(const Context& context);
     void watch_calls(const Context& context);
     void come_to_rest(const Context& context);

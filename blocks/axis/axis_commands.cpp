@@ -126,7 +126,9 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
     enables_positive = request.enables_positive;
     enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
-    if (!on) {
+    if (!on && is_at_work() && rules_of(request.rules).fails_without_power) {
+        fail(context, at, MotionError::axis_disabled);
+    } else if (!on) {
         brake(at);
         abort_all(context);
         state = AxisState::disabled;
@@ -134,6 +136,15 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
         if (state == AxisState::disabled) powered_in = scan_index;
         come_to_rest(context);
     }
+}
+
+/// It moves, or a command is about to move it: none that holds it, or follows what stands.
+bool Axis::is_at_work() const {
+    const MotionState now = total();
+    const bool moves = now.velocity != 0 || now.acceleration != 0;
+    const bool waits =
+        active.exists() && active.told_end == 0 && doing != Doing::following_axes && !is_led();
+    return state != AxisState::disabled && (moves || waits);
 }
 
 void Axis::begin_without_power(const Context& context) {

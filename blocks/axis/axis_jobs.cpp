@@ -163,12 +163,12 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     const Request request = job.request;
     if (is_administrative(request.command)) return carry_out(context, at, job);
     const bool aborts = request.mode == BufferMode::aborting;
-    const bool drops_added = aborts || request.command == Command::home;
+    const bool drops_added = !keeps_added(request);
     const bool stands = base.velocity == 0 && base.acceleration == 0;
     const auto next =
         next_state(request.command, stands && !aborts ? AxisState::standstill : state);
     if (!next) return tell(job, Progress::failed, refusal());
-    const Start from = start_of(request, !drops_added);
+    const Start from = start_of(request, drops_added);
     if (along) {
         go_along(*along, job, from);
     } else if (const MotionError why = plan_any(context, request, at, from);
@@ -180,7 +180,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
         clear_added();
         end(context, added, Progress::aborted);
     }
-    if (aborts) abort_all(context);
+    if (aborts) abort_beneath(context, Progress::aborted);
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
     ++commands;
@@ -189,7 +189,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     const bool was_overridden = is_overridden();
     state = *next;
     const bool counts = is_absolute(request.command) && !keeps_superimposed(request);
-    added_counted = added.exists() && counts ? 1 : 0;
+    added_counted = added.exists() && counts && !aborts ? 1 : 0;
     if (is_overridden() != was_overridden) replan_added(context, at);
     tell(job, begun());
 }
@@ -215,8 +215,13 @@ void Axis::begin_next(const Context& context, const Moment& at, const Stretch* r
 /// What waits is aborted, and what is at work, or else it fails.
 void Axis::abort_all(const Context& context, MotionError why) {
     const Progress how = why == MotionError::none ? Progress::aborted : Progress::failed;
-    end(context, active, how, why);
+    abort_beneath(context, how, why);
     end(context, added, how, why);
+}
+
+/// The same, but for what is on top.
+void Axis::abort_beneath(const Context& context, Progress how, MotionError why) {
+    end(context, active, how, why);
     end(context, phased, how, why);
     end_waiting(context, how, why);
 }
