@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::size_t axes_ahead = 4;
 
+constexpr std::string_view doing_names[] = {
+    "holding",           "moving_to_point", "following_velocity",  "following_axes",
+    "following_profile", "following_group", "following_set_points"};
+
 /// The phase of a plan is known once the line is there that says which: it is a nearer axis'.
 void prefetch(const Axis* axis) {
     const auto ask_for = [](const void* from, const void* to) {
@@ -108,6 +112,12 @@ std::span<const Field> Axis::fields() {
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
         local("turns", &A::turns, "", "of a modulo axis: whole periods that `position` leaves out"),
         local("homed", &A::homed, "", "by MC_Home"),
+        local("doing", &A::doing, "", "what the set-point does").one_of(doing_names),
+        local("powered", &A::powered, "", "1: as MC_Power wants it"),
+        local("enables_positive", &A::enables_positive, "", "1: the direction, by MC_Power"),
+        local("enables_negative", &A::enables_negative, "", "likewise"),
+        local("position_offset", &A::position_offset, "{unit}",
+              "that MC_SetPosition has added since MC_Home"),
         of_active(local("jogs", &A::Running::request, &Request::jogs, "",
                         "1: what moves it is MC_MoveJog")),
         of_active(local("asked_deceleration", &A::Running::request, &Request::deceleration,

@@ -138,6 +138,7 @@ struct Axis {
     double added_seen = 0;           ///< and how far the motion beneath was then,
     double added_beneath = 0;        ///< with which velocity
     double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
+    double position_offset = 0;      ///< by MC_SetPosition since the last of MC_Home
     double goal = 0;                 ///< of `active`, as a position beneath; where it ended
     double origin = 0;               ///< from where the distance of `active` counts, likewise
     double lasting = 0;         ///< velocity that the motion goes on with, but for the override

@@ -243,6 +243,7 @@ MotionError Axis::set_position(const Context& context, const Moment& at, const R
     ++renamed;
     offset += by;
     relocated += by;
+    position_offset = request.reference == Referencing::unchanged ? position_offset + by : 0;
     goal += by;
     origin += by;
     const bool is_known = request.reference == Referencing::known;

@@ -226,6 +226,7 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
     const MotionError why = plan_velocity(search, at, known);
     if (why != MotionError::none) return why;
     relocated += known.state.position - from.state.position;
+    position_offset = 0;
     ++renamed;
     from = known;
     return why;
