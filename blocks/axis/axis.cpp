@@ -323,6 +323,7 @@ void Axis::end_motion(const Context& context) {
     if (!active.exists()) return settle();
     if (of_profile && base.velocity != lasting * factors.velocity) return replan(context, at);
     if (state == AxisState::homing && active.request.homing == HomingMode::on_signal) return;
+    if (halts_beneath()) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
@@ -374,6 +375,12 @@ void Axis::settle() {
         state = AxisState::standstill;
 }
 
+/// How a place is shown, from which what is still to be done in this scan begins.
+void Axis::call_place(double place) {
+    position = modulo ? within_period(place, period) : place;
+    if (modulo) turns = std::round((place - position) / period);
+}
+
 // The four are stored in one go: else gcc loads velocity and acceleration together, which advance()
 // has just stored in two pieces, and the processor waits (ten axes in motion take 141 ns, not 150).
 void Axis::publish() {
@@ -383,9 +390,7 @@ void Axis::publish() {
         error_id = MotionError::not_finite;
         return;
     }
-    const double place = modulo ? within_period(now.position, period) : now.position;
-    if (modulo) turns = std::round((now.position - place) / period);
-    position = place;
+    call_place(now.position);
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

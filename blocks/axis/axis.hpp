@@ -134,18 +134,16 @@ struct Axis {
     double added_before = 0;         ///< way from on top that `base` has taken in since an abort
     std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
     std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
-    double added_passed = 0;         ///< of one that goes by way: so much of its plan [s],
-    double added_seen = 0;           ///< and how far the motion beneath was then,
-    double added_beneath = 0;        ///< with which velocity
-    double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
-    double position_offset = 0;      ///< by MC_SetPosition since the last of MC_Home
-    double goal = 0;                 ///< of `active`, as a position beneath; where it ended
-    double origin = 0;               ///< from where the distance of `active` counts, likewise
-    double lasting = 0;         ///< velocity that the motion goes on with, but for the override
-    Factors factors;            ///< of MC_SetOverride
-    std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
-    std::int64_t powered = 1;   ///< what MC_Power wants
-    std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
+    double added_passed = 0;  ///< of one that goes by way: so much of its plan [s], while the
+    double added_seen = 0, added_beneath = 0;  ///< motion beneath was there, with this velocity
+    double relocated = 0;        ///< by MC_SetPosition and MC_Home: followers do not see it
+    double position_offset = 0;  ///< by MC_SetPosition since the last of MC_Home
+    double goal = 0;             ///< of `active`, as a position beneath; where it ended
+    double origin = 0;           ///< from where the distance of `active` counts, likewise
+    double lasting = 0;          ///< velocity that the motion goes on with, but for the override
+    Factors factors;             ///< of MC_SetOverride
+    std::int64_t paused = 0;     ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1, switched = 0;  ///< what MC_Power wants; whether it has said so
     CommandRules switched_by = CommandRules::plcopen;  ///< whose MC_Power
     std::int64_t powered_in = nowhere;  ///< scan in which it got power: what that takes up was
                                         ///< sent without it
@@ -253,6 +251,7 @@ struct Axis {
     void end_hold(const Context& context, const Moment& at);
     void end_leg(const Moment& at);
     void watch_drive(const Context& context, const Scan& now);
+    void call_place(double place);
     void publish();
 
     // axis_limits.cpp: the position stays within software limits.
@@ -371,10 +370,10 @@ struct Axis {
     void take_in(double way);
     void look_at_added(std::int64_t now);
     bool goes_by_way() const;
+    bool halts_beneath() const;
     double beneath() const;
     MotionState added_by_way() const;
     MotionState added_over_time(double process_velocity) const;
-    Range range_by_way() const;
     void watch_beneath(const Context& context);
     void stop_added(const Context& context);
     bool keeps_added(const Request& request) const;
@@ -394,6 +393,7 @@ struct Axis {
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
     bool takes_over_stop(const Request& request) const;
+    bool is_occupied() const;
     void release(const Context& context, const Moment& at);
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);

@@ -233,14 +233,16 @@ void Axis::leave_error() {
 }
 
 MotionError Axis::set_position(const Context& context, const Moment& at, const Request& request) {
-    const bool relative = request.relative != 0;
-    if (modulo && !relative && (request.position < 0 || request.position >= period))
-        return MotionError::out_of_range;
+    const bool relative = request.relative != 0, counts_turns = request.period < 0;
+    const bool is_outside = request.position < 0 || request.position >= period;
+    if (modulo && !relative && !counts_turns && is_outside) return MotionError::out_of_range;
     const bool waited = request.mode != BufferMode::aborting;  // for an end since the last scan
-    const double end = total().position;
-    const double here = !waited ? position : modulo ? within_period(end, period) : end;
+    const double place = waited ? total().position : position + turns * period;
+    const double in_period = waited && modulo ? within_period(place, period) : position;
+    const double here = counts_turns || !modulo ? place : in_period;
     const double by = relative ? request.position : request.position - here;
     ++renamed;
+    call_place(place + by);
     offset += by;
     relocated += by;
     position_offset = request.reference == Referencing::unchanged ? position_offset + by : 0;

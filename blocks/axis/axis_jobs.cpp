@@ -41,7 +41,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (rules_of(request.rules).ends_endless && is_endless())
         job.request.mode = BufferMode::aborting;
     const bool waits =
-        request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
+        request.mode != BufferMode::aborting && is_occupied() && can_be_followed(state);
     const bool is_of_slave = is_phasing(request.command) || request.command == Command::gear_out ||
                              request.command == Command::cam_out;
     if (doing == Doing::following_set_points && is_of_slave)
@@ -63,6 +63,12 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     }
     if (waits) return wait(context, at, job);
     begin(context, follows_group() ? Moment{led_at} : at, job);
+}
+
+/// Something is under way that ends by itself or by another command. What goes by the way of a
+/// motion beneath, and has none, waits for that.
+bool Axis::is_occupied() const {
+    return active.exists() || (added.exists() && !goes_by_way());
 }
 
 /// Where both are ranked, as those of Siemens. One that stands has done its work.

@@ -81,9 +81,11 @@ bool Axis::leads_inside(const Motion& beneath, const Start& from) const {
 
 /// Where what is on top may be, but for what is planned over time, as the way has that.
 Range Axis::added_range() const {
-    if (goes_by_way()) return range_by_way();
-    if (added.exists()) return {};
-    return {extra.position, extra.position};
+    if (!added.exists()) return {extra.position, extra.position};
+    if (!goes_by_way()) return {};
+    const MotionState s = added_motion.plan.at(added_passed);
+    const double stop = stopping_position(s, asked_of(added.request));
+    return {std::min({s.position, added_goal, stop}), std::max({s.position, added_goal, stop})};
 }
 
 /// The motion under way, as it is planned, from the scan under way on.

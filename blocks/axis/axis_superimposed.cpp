@@ -113,8 +113,17 @@ void Axis::end_added(const Context& context) {
     safe.as_planned = 0;
     extra = {.position = added_goal};
     added.covered = extra.position - added.from;
+    const bool halts = halts_beneath();
     end(context, added, Progress::done);
+    if (halts) end_done(context);
+    if (!active.exists() && queue.first != nowhere) return begin_next(context, {scan_time});
     settle();
+}
+
+/// What is to stand does so beneath, while something on top still moves.
+bool Axis::halts_beneath() const {
+    return active.request.command == Command::halt && doing == Doing::holding &&
+           base.velocity == 0 && added.exists() && !goes_by_way();
 }
 
 /// By the way of the motion beneath, as far as that takes at the velocity for which it is planned.
@@ -147,13 +156,6 @@ MotionState Axis::added_over_time(double process_velocity) const {
     }
     const double rate = std::abs(base.velocity) / process_velocity;
     return {extra.position, rate > 0 ? extra.velocity / rate : 0};
-}
-
-/// Between which positions it stays until it ends.
-Range Axis::range_by_way() const {
-    const MotionState s = added_motion.plan.at(added_passed);
-    const double stop = stopping_position(s, asked_of(added.request));
-    return {std::min({s.position, added_goal, stop}), std::max({s.position, added_goal, stop})};
 }
 
 /// What goes by way ends with its plan, or by what it is to be aborted; else it waits for the
