@@ -86,7 +86,7 @@ def of_twincat(a, axis):
         Command(f"stop_{a}", "MC_Stop", axis, {"Deceleration": ACCELERATIONS}, ALL),
         Command(f"add_{a}", "MC_MoveSuperImposed", axis,
                 {"Mode": [1, 2, 3, 4, 5, 6, 0], "Distance": DISTANCES, "VelocityDiff": VELOCITIES,
-                 "VelocityProcess": VELOCITIES, "Length": [10, 50, 100]}, ALL),
+                 "VelocityProcess": [100, 200], "Length": [10, 50, 100]}, ALL),
         Command(f"drop_{a}", "MC_AbortSuperposition", axis, {}, SHORT),
         Command(f"place_{a}", "MC_SetPosition", axis, {"Position": POSITIONS, "Mode": [False, True]}, SHORT),
         Command(f"home_{a}", "MC_Home", axis,

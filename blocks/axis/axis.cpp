@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::size_t axes_ahead = 4;
 
+constexpr std::string_view doing_names[] = {
+    "holding",           "moving_to_point", "following_velocity",  "following_axes",
+    "following_profile", "following_group", "following_set_points"};
+
 /// The phase of a plan is known once the line is there that says which: it is a nearer axis'.
 void prefetch(const Axis* axis) {
     const auto ask_for = [](const void* from, const void* to) {
@@ -108,6 +112,12 @@ std::span<const Field> Axis::fields() {
         local("actual_velocity", &A::actual_velocity, "{unit}/s", "with `has_drive`"),
         local("turns", &A::turns, "", "of a modulo axis: whole periods that `position` leaves out"),
         local("homed", &A::homed, "", "by MC_Home"),
+        local("doing", &A::doing, "", "what the set-point does").one_of(doing_names),
+        local("powered", &A::powered, "", "1: as MC_Power wants it"),
+        local("enables_positive", &A::enables_positive, "", "1: the direction, by MC_Power"),
+        local("enables_negative", &A::enables_negative, "", "likewise"),
+        local("position_offset", &A::position_offset, "{unit}",
+              "that MC_SetPosition has added since MC_Home"),
         of_active(local("jogs", &A::Running::request, &Request::jogs, "",
                         "1: what moves it is MC_MoveJog")),
         of_active(local("asked_deceleration", &A::Running::request, &Request::deceleration,
@@ -248,8 +258,10 @@ MotionState Axis::total() const {
 void Axis::advance(const Context& context, std::int64_t now) {
     if (goes_on(now)) return;
     while (has_ended(now)) end_motion(context);
-    if (added.exists() && added_paused == 0 && added_motion.has_ended(now)) end_added(context);
+    const bool over_time = added.exists() && added_paused == 0 && !goes_by_way();
+    if (over_time && added_motion.has_ended(now)) end_added(context);
     look(context, now);
+    if (goes_by_way()) watch_beneath(context);
 }
 
 /// What most scans are: a move goes on, with nothing on top of it. False where more than that is
@@ -311,6 +323,7 @@ void Axis::end_motion(const Context& context) {
     if (!active.exists()) return settle();
     if (of_profile && base.velocity != lasting * factors.velocity) return replan(context, at);
     if (state == AxisState::homing && active.request.homing == HomingMode::on_signal) return;
+    if (halts_beneath()) return;
     if (state == AxisState::continuous_motion && active.request.command != Command::gear_out &&
         active.request.command != Command::cam_out)
         tell(context, active, Progress::reached);
@@ -353,12 +366,19 @@ void Axis::end_leg(const Moment& at) {
     leg.exists = 0;
 }
 
-/// Standing, with nothing to do.
+/// Standing, with nothing to do but for what waits until something moves.
 void Axis::settle() {
-    if (active.exists() || added.exists() || doing != Doing::holding) return;
+    const bool adds = added.exists() && !goes_by_way();
+    if (active.exists() || adds || doing != Doing::holding) return;
     if (velocity_motion.ramp.end.velocity != 0 || lasting != 0) return;
     if (state != AxisState::disabled && state != AxisState::error_stop)
         state = AxisState::standstill;
+}
+
+/// How a place is shown, from which what is still to be done in this scan begins.
+void Axis::call_place(double place) {
+    position = modulo ? within_period(place, period) : place;
+    if (modulo) turns = std::round((place - position) / period);
 }
 
 // The four are stored in one go: else gcc loads velocity and acceleration together, which advance()
@@ -370,9 +390,7 @@ void Axis::publish() {
         error_id = MotionError::not_finite;
         return;
     }
-    const double place = modulo ? within_period(now.position, period) : now.position;
-    if (modulo) turns = std::round((now.position - place) / period);
-    position = place;
+    call_place(now.position);
     velocity = now.velocity;
     acceleration = now.acceleration;
     jerk = now.jerk;

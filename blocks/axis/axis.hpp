@@ -134,14 +134,16 @@ struct Axis {
     double added_before = 0;         ///< way from on top that `base` has taken in since an abort
     std::int64_t added_paused = 0;   ///< on the way there, by an override of 0
     std::int64_t added_counted = 0;  ///< the target of `active` counts on all of `added`
-    double relocated = 0;            ///< by MC_SetPosition and MC_Home: followers do not see it
-    double goal = 0;                 ///< of `active`, as a position beneath; where it ended
-    double origin = 0;               ///< from where the distance of `active` counts, likewise
-    double lasting = 0;         ///< velocity that the motion goes on with, but for the override
-    Factors factors;            ///< of MC_SetOverride
-    std::int64_t paused = 0;    ///< on the way to `goal`, by an override of 0
-    std::int64_t powered = 1;   ///< what MC_Power wants
-    std::int64_t switched = 0;  ///< MC_Power has said so: an axis without it has power
+    double added_passed = 0;  ///< of one that goes by way: so much of its plan [s], while the
+    double added_seen = 0, added_beneath = 0;  ///< motion beneath was there, with this velocity
+    double relocated = 0;        ///< by MC_SetPosition and MC_Home: followers do not see it
+    double position_offset = 0;  ///< by MC_SetPosition since the last of MC_Home
+    double goal = 0;             ///< of `active`, as a position beneath; where it ended
+    double origin = 0;           ///< from where the distance of `active` counts, likewise
+    double lasting = 0;          ///< velocity that the motion goes on with, but for the override
+    Factors factors;             ///< of MC_SetOverride
+    std::int64_t paused = 0;     ///< on the way to `goal`, by an override of 0
+    std::int64_t powered = 1, switched = 0;  ///< what MC_Power wants; whether it has said so
     CommandRules switched_by = CommandRules::plcopen;  ///< whose MC_Power
     std::int64_t powered_in = nowhere;  ///< scan in which it got power: what that takes up was
                                         ///< sent without it
@@ -228,7 +230,7 @@ struct Axis {
         double taken = 0;          ///< way of `extra` that is in both, and no longer on top
         bool drops_added = false;  ///< what is on top does not go on
     };
-    Start start_of(const Request& request, bool keeps_added) const;
+    Start start_of(const Request& request, bool drops_added) const;
     Start start_again() const;
     bool is_overridden() const;
     Dynamics dynamics_with(const Request& request, const Factors& by) const;
@@ -249,6 +251,7 @@ struct Axis {
     void end_hold(const Context& context, const Moment& at);
     void end_leg(const Moment& at);
     void watch_drive(const Context& context, const Scan& now);
+    void call_place(double place);
     void publish();
 
     // axis_limits.cpp: the position stays within software limits.
@@ -267,7 +270,8 @@ struct Axis {
     bool is_safe(const MotionState& next);
     bool finds_room(const MotionState& next);
     bool can_brake(const MotionState& from) const;
-    bool leads_inside(const Way& way, double further) const;
+    bool leads_inside(const Way& way, const Range& further) const;
+    Range added_range() const;
     template <class Motion>
     bool leads_inside(const Motion& beneath, const Start& from) const;
     bool goes_on_inside() const;
@@ -278,7 +282,7 @@ struct Axis {
     bool may_begin(const PointMotion& next, const Start& from) const;
     bool may_begin(const VelocityMotion& next, const Start& from) const;
     bool may_follow(const ProfileMotion& next, const Cam& cam, const Start& from) const;
-    bool may_add(const PointMotion& next) const;
+    bool may_add(const PointMotion& next, bool by_way) const;
     bool may_wait(const Context& context, const Request& request) const;
 
     // axis_masters.cpp: what is seen of other axes.
@@ -345,6 +349,7 @@ struct Axis {
     void begin(const Context& context, const Moment& at, Job& job, const Stretch* along = nullptr);
     void begin_next(const Context& context, const Moment& at, const Stretch* rest = nullptr);
     void abort_all(const Context& context, MotionError why = MotionError::none);
+    void abort_beneath(const Context& context, Progress how, MotionError why = MotionError::none);
     void end_waiting(const Context& context, Progress how, MotionError why = MotionError::none);
     void end(const Context& context, Running& running, Progress how,
              MotionError why = MotionError::none);
@@ -364,6 +369,14 @@ struct Axis {
     void make_up_for(double missing);
     void take_in(double way);
     void look_at_added(std::int64_t now);
+    bool goes_by_way() const;
+    bool halts_beneath() const;
+    double beneath() const;
+    MotionState added_by_way() const;
+    MotionState added_over_time(double process_velocity) const;
+    void watch_beneath(const Context& context);
+    void stop_added(const Context& context);
+    bool keeps_added(const Request& request) const;
     void end_added(const Context& context);
     void clear_added();
 
@@ -374,11 +387,13 @@ struct Axis {
     MotionError write_parameter(const Context& context, std::int64_t number, double value);
     double* limit_of(std::int64_t number);
     void switch_power(const Context& context, const Moment& at, const Request& request);
+    bool is_at_work() const;
     void keep_directions(const Context& context);
     void watch_calls(const Context& context);
     void come_to_rest(const Context& context);
     void stop_again(const Context& context, const Moment& at, Job& job);
     bool takes_over_stop(const Request& request) const;
+    bool is_occupied() const;
     void release(const Context& context, const Moment& at);
     void leave_error();
     void fail(const Context& context, const Moment& at, MotionError why);

@@ -123,7 +123,8 @@ Axis::Before Axis::before(const Context& context, const Job& job) const {
 /// Behind what waits last, or is at work.
 bool Axis::may_blend(const Context& context, const Request& request) const {
     if (request.mode < BufferMode::blending_low) return true;
-    if (!rules_of(request.rules).blends_moves_only) return true;
+    const bool is_first = queue.last == nowhere && !active.exists();
+    if (is_first || !rules_of(request.rules).blends_moves_only) return true;
     const Request& before =
         queue.last == nowhere ? active.request : context.at<Job>(queue.last).request;
     return ends_standing(before.command);
@@ -246,7 +247,7 @@ void Axis::blend(const Context& context, const Moment& at) {
 /// Whether the stretch that the move before has planned is the way of the command that comes next.
 bool Axis::leads_along(const Stretch& stretch, const Job& next) const {
     if (next.ahead.joins == 0) return false;
-    const Start from = start_of(next.request, true);
+    const Start from = start_of(next.request, false);
     double to = target_of(next.request, from);
     const double end =
         stretch.leg.exists != 0 ? stretch.leg.goal : stretch.motion.plan.end.position;

@@ -126,7 +126,9 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
     enables_positive = request.enables_positive;
     enables_negative = request.enables_negative;
     if (state == AxisState::error_stop) return;
-    if (!on) {
+    if (!on && is_at_work() && rules_of(request.rules).fails_without_power) {
+        fail(context, at, MotionError::axis_disabled);
+    } else if (!on) {
         brake(at);
         abort_all(context);
         state = AxisState::disabled;
@@ -134,6 +136,15 @@ void Axis::switch_power(const Context& context, const Moment& at, const Request&
         if (state == AxisState::disabled) powered_in = scan_index;
         come_to_rest(context);
     }
+}
+
+/// It moves, or a command is about to move it: none that holds it, or follows what stands.
+bool Axis::is_at_work() const {
+    const MotionState now = total();
+    const bool moves = now.velocity != 0 || now.acceleration != 0;
+    const bool waits =
+        active.exists() && active.told_end == 0 && doing != Doing::following_axes && !is_led();
+    return state != AxisState::disabled && (moves || waits);
 }
 
 void Axis::begin_without_power(const Context& context) {
@@ -222,16 +233,19 @@ void Axis::leave_error() {
 }
 
 MotionError Axis::set_position(const Context& context, const Moment& at, const Request& request) {
-    const bool relative = request.relative != 0;
-    if (modulo && !relative && (request.position < 0 || request.position >= period))
-        return MotionError::out_of_range;
+    const bool relative = request.relative != 0, counts_turns = request.period < 0;
+    const bool is_outside = request.position < 0 || request.position >= period;
+    if (modulo && !relative && !counts_turns && is_outside) return MotionError::out_of_range;
     const bool waited = request.mode != BufferMode::aborting;  // for an end since the last scan
-    const double end = total().position;
-    const double here = !waited ? position : modulo ? within_period(end, period) : end;
+    const double place = waited ? total().position : position + turns * period;
+    const double in_period = waited && modulo ? within_period(place, period) : position;
+    const double here = counts_turns || !modulo ? place : in_period;
     const double by = relative ? request.position : request.position - here;
     ++renamed;
+    call_place(place + by);
     offset += by;
     relocated += by;
+    position_offset = request.reference == Referencing::unchanged ? position_offset + by : 0;
     goal += by;
     origin += by;
     const bool is_known = request.reference == Referencing::known;

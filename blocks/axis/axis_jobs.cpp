@@ -41,7 +41,7 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     if (rules_of(request.rules).ends_endless && is_endless())
         job.request.mode = BufferMode::aborting;
     const bool waits =
-        request.mode != BufferMode::aborting && active.exists() && can_be_followed(state);
+        request.mode != BufferMode::aborting && is_occupied() && can_be_followed(state);
     const bool is_of_slave = is_phasing(request.command) || request.command == Command::gear_out ||
                              request.command == Command::cam_out;
     if (doing == Doing::following_set_points && is_of_slave)
@@ -63,6 +63,12 @@ void Axis::take(const Context& context, const Moment& at, Job& job) {
     }
     if (waits) return wait(context, at, job);
     begin(context, follows_group() ? Moment{led_at} : at, job);
+}
+
+/// Something is under way that ends by itself or by another command. What goes by the way of a
+/// motion beneath, and has none, waits for that.
+bool Axis::is_occupied() const {
+    return active.exists() || (added.exists() && !goes_by_way());
 }
 
 /// Where both are ranked, as those of Siemens. One that stands has done its work.
@@ -163,12 +169,12 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     const Request request = job.request;
     if (is_administrative(request.command)) return carry_out(context, at, job);
     const bool aborts = request.mode == BufferMode::aborting;
-    const bool drops_added = aborts || request.command == Command::home;
+    const bool drops_added = !keeps_added(request);
     const bool stands = base.velocity == 0 && base.acceleration == 0;
     const auto next =
         next_state(request.command, stands && !aborts ? AxisState::standstill : state);
     if (!next) return tell(job, Progress::failed, refusal());
-    const Start from = start_of(request, !drops_added);
+    const Start from = start_of(request, drops_added);
     if (along) {
         go_along(*along, job, from);
     } else if (const MotionError why = plan_any(context, request, at, from);
@@ -180,7 +186,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
         clear_added();
         end(context, added, Progress::aborted);
     }
-    if (aborts) abort_all(context);
+    if (aborts) abort_beneath(context, Progress::aborted);
     end(context, active, Progress::aborted);
     active = {context.place_of(job), job.ticket, request, 0};
     ++commands;
@@ -189,7 +195,7 @@ void Axis::begin(const Context& context, const Moment& at, Job& job, const Stret
     const bool was_overridden = is_overridden();
     state = *next;
     const bool counts = is_absolute(request.command) && !keeps_superimposed(request);
-    added_counted = added.exists() && counts ? 1 : 0;
+    added_counted = added.exists() && counts && !aborts ? 1 : 0;
     if (is_overridden() != was_overridden) replan_added(context, at);
     tell(job, begun());
 }
@@ -215,8 +221,13 @@ void Axis::begin_next(const Context& context, const Moment& at, const Stretch* r
 /// What waits is aborted, and what is at work, or else it fails.
 void Axis::abort_all(const Context& context, MotionError why) {
     const Progress how = why == MotionError::none ? Progress::aborted : Progress::failed;
-    end(context, active, how, why);
+    abort_beneath(context, how, why);
     end(context, added, how, why);
+}
+
+/// The same, but for what is on top.
+void Axis::abort_beneath(const Context& context, Progress how, MotionError why) {
+    end(context, active, how, why);
     end(context, phased, how, why);
     end_waiting(context, how, why);
 }

@@ -57,12 +57,13 @@ bool Axis::can_brake(const MotionState& from) const {
 }
 
 /// From where the way ends, too, it can brake inside.
-bool Axis::leads_inside(const Way& way, double further) const {
+bool Axis::leads_inside(const Way& way, const Range& further) const {
     Range passed = way.positions(way.duration());
-    passed = {passed.least + further, passed.greatest + further};
+    passed = {passed.least + further.least, passed.greatest + further.greatest};
     MotionState end = way.at(way.duration());
-    end.position += further;
-    return bounds().contain(passed) && (end.velocity == 0 || can_brake(end));
+    end.position += further.least;
+    const bool is_known = further.least == further.greatest;
+    return bounds().contain(passed) && (end.velocity == 0 || (is_known && can_brake(end)));
 }
 
 /// With what is on top of it, as both are planned.
@@ -71,8 +72,20 @@ bool Axis::leads_inside(const Motion& beneath, const Start& from) const {
     Way way(beneath.start);
     way.add(beneath);
     const bool adds = added.exists() && !from.drops_added;
-    if (adds) way.add(added_motion);
-    return leads_inside(way, adds ? -from.taken : extra.position - from.taken);
+    if (adds && !goes_by_way()) way.add(added_motion);
+    Range further = from.drops_added ? Range{extra.position, extra.position} : added_range();
+    further.least -= from.taken;
+    further.greatest -= from.taken;
+    return leads_inside(way, further);
+}
+
+/// Where what is on top may be, but for what is planned over time, as the way has that.
+Range Axis::added_range() const {
+    if (!added.exists()) return {extra.position, extra.position};
+    if (!goes_by_way()) return {};
+    const MotionState s = added_motion.plan.at(added_passed);
+    const double stop = stopping_position(s, asked_of(added.request));
+    return {std::min({s.position, added_goal, stop}), std::max({s.position, added_goal, stop})};
 }
 
 /// The motion under way, as it is planned, from the scan under way on.
@@ -84,19 +97,23 @@ bool Axis::goes_on_inside() const {
         way.add(point_motion);
     else
         way.add(velocity_motion);
-    if (added.exists()) way.add(added_motion);
-    const double further = added.exists() ? offset : offset + extra.position;
+    const bool over_time = added.exists() && !goes_by_way();
+    if (over_time) way.add(added_motion);
+    Range further = added_range();
+    further.least += offset;
+    further.greatest += offset;
     if (leg.exists == 0) return leads_inside(way, further);
     const Moment end = point_motion.start.after(point_motion.plan.duration);
     const Range passed = way.positions(std::max(0.0, -end.until(scan_time)));
-    if (!bounds().contain({passed.least + further, passed.greatest + further})) return false;
+    if (!bounds().contain({passed.least + further.least, passed.greatest + further.greatest}))
+        return false;
     PointMotion rest;
     if (rest.begin(point_motion.plan.end, leg.goal, leg.velocity, leg.dynamics, end) !=
         PlanResult::ok)
         return false;
     Way then(end);
     then.add(rest);
-    if (added.exists()) then.add(added_motion);
+    if (over_time) then.add(added_motion);
     return leads_inside(then, further);
 }
 
@@ -257,7 +274,7 @@ bool Axis::may_wait(const Context& context, const Request& request) const {
 }
 
 /// On top of what the axis does.
-bool Axis::may_add(const PointMotion& next) const {
+bool Axis::may_add(const PointMotion& next, bool by_way) const {
     if (!software_limits) return true;
     const bool ends = doing == Doing::moving_to_point ||
                       (doing != Doing::following_axes && doing != Doing::following_profile &&
@@ -268,8 +285,11 @@ bool Axis::may_add(const PointMotion& next) const {
         way.add(point_motion);
     else
         way.add(velocity_motion);
-    way.add(next);
-    return leads_inside(way, offset);
+    if (!by_way) way.add(next);
+    Way alone(next.start);
+    if (by_way) alone.add(next);
+    const Range more = alone.positions(alone.duration());
+    return leads_inside(way, {offset + more.least, offset + more.greatest});
 }
 
 }  // namespace lineshaft

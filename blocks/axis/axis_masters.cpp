@@ -125,7 +125,7 @@ Forecast Axis::foresee(const Context& context) const {
     ahead.add(0, now);
     const bool plans = leader.doing == Doing::holding || leader.doing == Doing::moving_to_point ||
                        leader.doing == Doing::following_velocity;
-    if (sync.coupling.is_measured() || !plans) {
+    if (sync.coupling.is_measured() || !plans || leader.goes_by_way()) {
         if (now.acceleration == 0 && now.jerk == 0) return ahead;
         const double soon = 2 * seconds(scan_interval);
         const MotionState then = now.after(soon);

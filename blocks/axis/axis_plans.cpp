@@ -20,13 +20,13 @@ ProfileOf profile_of(Command command) {
 
 }  // namespace
 
-/// With all the way that is on top: of what it aborts as far as that has come, else to its end.
-Axis::Start Axis::start_of(const Request& request, bool keeps_added) const {
+/// With all the way that is on top: where it aborts as far as that has come, else to its end.
+Axis::Start Axis::start_of(const Request& request, bool drops_added) const {
     Start from = start_again();
-    from.taken = keeps_added ? added_goal : extra.position;
+    from.taken = request.mode != BufferMode::aborting && !drops_added ? added_goal : extra.position;
     from.state.position += from.taken;
-    from.drops_added = !keeps_added;
-    if (!keeps_added) from.state = total();
+    from.drops_added = drops_added;
+    if (drops_added) from.state = total();
     const bool from_goal =
         request.command == Command::move_additive && state == AxisState::discrete_motion;
     from.origin = from_goal ? goal + from.taken : from.state.position;
@@ -226,6 +226,7 @@ MotionError Axis::plan_homing(const Request& request, const Moment& at, Start& f
     const MotionError why = plan_velocity(search, at, known);
     if (why != MotionError::none) return why;
     relocated += known.state.position - from.state.position;
+    position_offset = 0;
     ++renamed;
     from = known;
     return why;

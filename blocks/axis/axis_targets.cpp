@@ -25,15 +25,17 @@ double Axis::place_of(const Request& request, const Start& from) const {
 }
 
 /// Of the places that show the position one that the axis can reach without turning round, and
-/// behind it the whole turns that the command asks for. One that begins in motion has none.
+/// behind it the whole turns that the command asks for. With a period of its own, TwinCAT's, one
+/// that begins in motion has none, and keeps its direction.
 double Axis::modulo_target(const Request& request, const Start& from, double turn) const {
     constexpr double tolerance = 1e-9;
     const double stop = stopping_position(from.state, dynamics_of(request));
     const double behind = (stop - request.position) / turn;
-    const bool adds = request.period > 0 && request.position >= turn &&
-                      !(request.mode == BufferMode::aborting && from.state.velocity != 0);
+    const bool is_moving = request.mode == BufferMode::aborting && from.state.velocity != 0;
+    const bool adds = request.period > 0 && request.position >= turn && !is_moving;
     const double more = adds ? std::floor(request.position / turn) : 0;
     MoveDirection direction = request.direction;
+    if (request.period > 0 && is_moving) direction = MoveDirection::current;
     if (direction == MoveDirection::current)
         direction = from.state.velocity < 0 ? MoveDirection::negative : MoveDirection::positive;
     if (direction == MoveDirection::positive)

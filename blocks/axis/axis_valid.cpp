@@ -119,7 +119,7 @@ bool motions_are_valid(const Axis& axis, const KeptState& machine) {
     using Doing = Axis::Doing;
     return is_one_of(axis.doing, Doing::following_set_points) &&
            is_valid(axis.velocity_motion, machine) && is_valid(axis.point_motion, machine) &&
-           is_valid(axis.added_motion, machine) &&
+           is_valid(axis.added_motion, machine) && is_duration(axis.added_passed) &&
            is_valid(axis.profile_motion, axis.doing == Doing::following_profile, machine) &&
            is_valid(axis.sync, axis.doing == Doing::following_axes, machine);
 }
@@ -183,6 +183,7 @@ bool is_valid(const Request& request, const KeptState& machine) {
         !is_one_of(request.mode, BufferMode::blending_high) ||
         !is_one_of(request.direction, MoveDirection::current) ||
         !is_one_of(request.homing, HomingMode::signalled) ||
+        !is_one_of(request.aborted_by, AbortedBy::neither) ||
         !is_one_of(request.reference, Referencing::unknown) ||
         !is_one_of(request.rules, CommandRules::softmotion) || !is_valid(request.coupling, machine))
         return false;

@@ -26,6 +26,7 @@ struct RulesOfVendor {
     bool exchanges_cams = false;  ///< of a cam at work another CamTableID counts at once
     bool wants_calls = false;     ///< what moves an axis is to be called in each scan of its task
     bool stops_at_directions = false;  ///< of MC_Power: a direction that is not enabled is no error
+    bool fails_without_power = false;  ///< of MC_Power: without Enable in motion it is an error
 };
 
 inline constexpr RulesOfVendor rules_of_vendors[] = {
@@ -34,7 +35,8 @@ inline constexpr RulesOfVendor rules_of_vendors[] = {
      .ends_endless = true,
      .halts_where_due = true,
      .reset_ends_stop = true,
-     .stops_at_directions = true},
+     .stops_at_directions = true,
+     .fails_without_power = true},
     {.blends_moves_only = true,
      .keeps_superimposed = true,
      .leaves_groups = true,

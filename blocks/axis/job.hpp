@@ -182,6 +182,12 @@ enum class HomingMode : std::int64_t { direct, to_position, on_signal, relative,
 /// unchanged searches a signal alone: the position stays, too.
 enum class Referencing : std::int64_t { unchanged, known, unknown };
 
+/// What aborts a superimposed move by TwinCAT's rules: the motion beneath stands, it has come to
+/// its end or has been stopped, or neither (blocks/axis/README.md).
+enum class AbortedBy : std::int64_t { standstill, end, neither };
+
+inline constexpr std::string_view aborted_by_names[] = {"by_standstill", "by_end", "by_neither"};
+
 /// What a command asks of its axis, in the axis' unit. Dynamics below 0 are the axis' own.
 struct Request {
     Command command = Command::none;
@@ -195,8 +201,11 @@ struct Request {
     std::int64_t enables_positive = 0, enables_negative = 0;  ///< of MC_Power
     std::int64_t holds = 0;                                   ///< Execute of MC_Stop
     std::int64_t is_enabled = 0;                              ///< Enable of MC_MotionInPosition
-    std::int64_t halts = 0;     ///< of MC_Phasing: where the shift can come to rest
-    std::int64_t relative = 0;  ///< of MC_SetPosition
+    std::int64_t halts = 0;       ///< of MC_Phasing: where the shift can come to rest
+    double process_velocity = 0;  ///< above 0: MC_MoveSuperimposed goes by the way of the motion
+                                  ///< beneath, as planned for this velocity of it [u/s]
+    AbortedBy aborted_by = AbortedBy::standstill;    ///< of one that does
+    std::int64_t relative = 0;                       ///< of MC_SetPosition
     Referencing reference = Referencing::unchanged;  ///< of MC_SetPosition, MC_Home
     std::int64_t jogs = 0;                           ///< of MC_MoveVelocity: MC_MoveJog has it
     std::int64_t significance = 0;  ///< of MC_Stop: it takes over from one that has no greater

@@ -127,7 +127,7 @@ MotionError CommandBlock::check() const {
     if (!pins.coupling.is_finite()) return MotionError::not_finite;
     return all_finite(pins.position, pins.velocity, pins.end_velocity, pins.acceleration,
                       pins.deceleration, pins.jerk, pins.velocity_factor, pins.acceleration_factor,
-                      pins.jerk_factor, pins.parameter_value)
+                      pins.jerk_factor, pins.parameter_value, pins.process_velocity)
                ? MotionError::none
                : MotionError::not_finite;
 }

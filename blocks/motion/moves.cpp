@@ -87,6 +87,14 @@ std::span<const Field> MoveSuperimposed::fields() {
                                 pin::done("the distance has been added"));
         table.push_back(output("CoveredDistance", &MoveSuperimposed::covered_distance, "{Axis}",
                                "that it has added so far"));
+        table.push_back(local("VelocityProcess", &CommandBlock::pins, &Request::process_velocity,
+                              "{Axis}/s",
+                              "above 0: it goes by the way of the motion beneath, as at this "
+                              "velocity of that over time"));
+        table.push_back(local("AbortedBy", &CommandBlock::pins, &Request::aborted_by, "",
+                              "of one that does, where the motion beneath stands, is at its end "
+                              "or stopped, or neither")
+                            .one_of(aborted_by_names));
         return table;
     }();
     return fields;

@@ -23,6 +23,8 @@ std::span<const Field> SetPosition::fields() {
                              "known: the axis is homed then, and an absolute move goes to its "
                              "Position as it is now, as Siemens homes; unknown: it is not homed")
                            .one_of(reference_names));
+        made.push_back(local("Period", &CommandBlock::pins, &Request::period, "{Axis}",
+                             "below 0: Position counts over all turns of a modulo axis"));
         return made;
     }();
     return table;

@@ -92,8 +92,9 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
 }
 
 /// `positive` and `ramp_in` of SoftMotion are mcPositiveDirection and mcRampIn of the catalogue:
-/// all of its words, or the first of them.
+/// all of its words, or the first of them. PLCopen's are called as the catalogue's.
 bool is_short_for(std::string_view name, std::string_view value) {
+    if (same_name(name, value)) return true;
     if (!value.starts_with("mc")) return false;
     value.remove_prefix(2);
     const std::size_t length = value.size();

@@ -55,6 +55,9 @@ bool is_of_twincat_alone(std::string_view name) {
     return same_name(name, "floor") || same_name(name, "ceil");
 }
 
+/// PLCopen's enumerations of the catalogue's pins, which others have with values of other names.
+constexpr std::string_view plcopen_enumerations = "PLCopenMC";
+
 /// B&R's of axes.
 bool is_of_mapp(std::string_view library) {
     return library.starts_with("Mc") || library.starts_with("Mp");
@@ -209,6 +212,9 @@ void LibraryNames::note(const Token& name) {
     const auto it = index_.by_name.find(name.text);
     const bool is_twincat = &name.place.dialect() == &twincat;
     if (it == index_.by_name.end() || (is_of_twincat_alone(it->first) && !is_twincat)) return;
+    const bool is_plcopens = it->second.front()->library == plcopen_enumerations;
+    const bool may_be_plcopens = reading_.empty() && !name.place.dialect().is_loose;
+    if (is_plcopens && it->second.size() == 1 && !may_be_plcopens) return;
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
@@ -335,13 +341,26 @@ std::size_t LibraryNames::pins_of_catalog(std::string_view name) const {
     return static_cast<std::size_t>(std::ranges::count_if(*named, is_its));
 }
 
+/// Sources of no vendor's dialect name values that are PLCopen's alone.
+bool LibraryNames::names_values_of_plcopen() const {
+    return std::ranges::any_of(names_, [&](std::string_view name) {
+        const auto& files = index_.by_name.at(name);
+        return files.size() == 1 && files.front()->library == plcopen_enumerations;
+    });
+}
+
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
     std::vector<const LibraryFile*> files = index_.by_name.at(name);
     const bool in_twincat = of_twincat_.contains(name);
+    const bool are_plcopens = names_values_of_plcopen() && !taken_libraries_.contains("SM3_Basic");
     std::erase_if(files, [&](const LibraryFile* file) {
         const bool is_softmotion = file->library.starts_with("SM3_");
-        return pins_of(*file, name) == 0 || (is_softmotion && in_twincat);
+        const bool is_plcopens = file->library == plcopen_enumerations;
+        return pins_of(*file, name) == 0 || (is_softmotion && in_twincat) ||
+               (is_plcopens && !are_plcopens);
     });
+    const auto plcopens = std::ranges::find(files, plcopen_enumerations, &LibraryFile::library);
+    if (plcopens != files.end() && index_.by_name.at(name).size() > 1) return *plcopens;
     const auto is_referred_to = [&](const LibraryFile* f) {
         return references_.contains(f->library);
     };

@@ -69,6 +69,7 @@ class LibraryNames {
     std::optional<std::size_t> pins_of(const LibraryFile& file, std::string_view name) const;
     bool is_another(const LibraryFile& file, std::string_view name) const;
     std::size_t pins_of_catalog(std::string_view name) const;
+    bool names_values_of_plcopen() const;
     const LibraryFile* choose(std::string_view name) const;
     void take(const LibraryFile& file);
     void take_said();
