@@ -274,6 +274,7 @@ void ProgramReader::controller(const Node& node) {
     Program controller;
     read_form(controller_form(), read_, *root, controller);
     program_.tasks = std::move(controller.tasks);
+    program_.notes = std::move(controller.notes);
     program_.instruction_times = controller.instruction_times;
     program_.controller_name = node;
     program_.controller = std::move(*root);
