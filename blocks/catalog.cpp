@@ -231,6 +231,7 @@ Catalog make_catalog() {
     blocks.add<ReadAxisError>();
     blocks.add<ReadActualPosition>();
     blocks.add<ReadActualVelocity>();
+    blocks.add<ReadSetPosition>();
     blocks.add<ReadParameter>();
     blocks.add<ReadBoolParameter>();
     blocks.add<WriteParameter>();
