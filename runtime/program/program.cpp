@@ -337,7 +337,7 @@ void ProgramReader::find_source(const Node& named) {
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
-/// Of a `.plcproj` that another one refers to as its library; empty: it is none.
+/// The namespace of a `.plcproj` that another refers to as its library; empty: it is none.
 std::string ProgramReader::namespace_of(const std::string& path) {
     if (fs::path(path).extension() != ".plcproj") return {};
     const projects::ProjectNames& own = projects_.emplace_back(projects::names_of_plcproj(path));

@@ -35,7 +35,7 @@ constexpr bool is_hex(char c) {
     return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'f');
 }
 
-/// Of `{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}`; empty: it is none.
+/// The GUID `{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}` as a value; empty: it is none.
 std::string guid_value(std::string_view text) {
     std::string digits;
     for (const char c : text)
@@ -48,7 +48,7 @@ std::string guid_value(std::string_view text) {
                        digits.substr(0, 8), digits.substr(8, 4), digits.substr(12, 4), bytes);
 }
 
-/// Of `29` or `#x1D`; empty: it is none.
+/// The number `29` or `#x1D` as a literal; empty: it is none.
 std::string number_value(std::string_view text) {
     const bool has_letters = text.starts_with("#x");
     if (has_letters) text.remove_prefix(2);
