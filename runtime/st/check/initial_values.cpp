@@ -175,7 +175,8 @@ void leave_excess_out(Expression& list, Wide room) {
         if (room == 0) break;
         Expression& value = *argument.value;
         const bool is_repeated = value.kind == E::repeated;
-        const auto parts = static_cast<Wide>(is_repeated ? value.arguments.size() : 1);
+        const auto parts =
+            static_cast<Wide>(is_repeated ? std::max<std::size_t>(value.arguments.size(), 1) : 1);
         const Wide times = is_repeated ? value.operands[0]->constant.integer : 1;
         const Wide whole = std::min(times, room / parts);
         if (is_repeated) value.operands[0]->constant.integer = whole;
