@@ -9,6 +9,7 @@
 
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/reader.hpp"
 
 namespace lineshaft::projects {
 
@@ -25,11 +26,6 @@ constexpr std::pair<std::string_view, std::string_view> classes_of_system[] = {
     {"TcGeneralAdsEventClass", "{7D760066-D373-4A0C-B0F1-328B1620B0F0}"},
     {"TcRTimeEventClass", "{92F05393-06A8-48C2-8871-EAA38C1E3990}"},
     {"Win32EventClass", "{4ABEFBBF-6620-4349-91AD-E6110A3BE851}"}};
-
-bool is_name(std::string_view text) {
-    return !text.empty() && is_letter(text.front()) &&
-           std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
-}
 
 constexpr bool is_hex(char c) {
     return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'f');
@@ -96,7 +92,7 @@ class EventClasses {
         const Mark place = file.mark_of_tag(type);
         const std::string name = file.plain(type.child("Name"));
         const std::string guid = guid_value(file.plain(type.child("Name").attribute("GUID")));
-        if (!is_name(name) || guid.empty() || !known_.insert(lower(name)).second) return;
+        if (!is_identifier(name) || guid.empty() || !known_.insert(lower(name)).second) return;
         types_.write(fmt::format("TYPE TC_EVENTS_{} : STRUCT\n", name), place);
         std::set<std::string> events;
         for (const pugi::xml_node event : type.children("EventId")) {
@@ -104,7 +100,7 @@ class EventClasses {
             const std::string number =
                 number_value(file.plain(event.child("Name").attribute("Id")));
             const std::string severity = file.plain(event.child("Severity"));
-            if (!is_name(called) || number.empty() || !events.insert(lower(called)).second)
+            if (!is_identifier(called) || number.empty() || !events.insert(lower(called)).second)
                 continue;
             types_.write(
                 fmt::format("{} : TcEventEntry := (uuidEventClass := {}, nEventId := {}, "
