@@ -140,7 +140,8 @@ std::vector<Argument> one_by_one(Checking& c, const Expression& list) {
         }
         Expression* count = argument.value->operands[0];
         const auto times = check_whole(c, count, lint_type);
-        const auto parts = static_cast<Wide>(argument.value->arguments.size());
+        const auto parts =
+            static_cast<Wide>(std::max<std::size_t>(argument.value->arguments.size(), 1));
         if (!times || *times < 0 || *times * parts > most_elements) return {};
         for (Wide i = 0; i < *times; ++i)
             for (const Argument& part : argument.value->arguments)
