@@ -98,7 +98,7 @@ void lack_of_softmotion(Catalog& blocks) {
     lack(blocks, table);
 }
 
-/// Of TwinCAT's interpolation, and of its groups what the catalogue's have otherwise.
+/// What TwinCAT's interpolation has, and of its groups what the catalogue's have otherwise.
 void lack_of_twincat(Catalog& blocks) {
     const Lack table[] = {
         {"a channel of the interpolation and its G code are not run here: make the axes a group "
@@ -139,7 +139,7 @@ void lack_of_twincat(Catalog& blocks) {
     lack(blocks, table);
 }
 
-/// Of B&R's motion before mapp.
+/// What B&R's motion had before mapp.
 void lack_of_br(Catalog& blocks) {
     const Lack table[] = {
         {"ACP10_MC is not here, whose blocks take an axis by its address: give PLCopen's blocks an "
@@ -231,6 +231,7 @@ Catalog make_catalog() {
     blocks.add<ReadAxisError>();
     blocks.add<ReadActualPosition>();
     blocks.add<ReadActualVelocity>();
+    blocks.add<ReadSetPosition>();
     blocks.add<ReadParameter>();
     blocks.add<ReadBoolParameter>();
     blocks.add<WriteParameter>();

@@ -28,7 +28,7 @@ LONG_FUNCTIONS = {
 }
 CLOSED_ENUMERATIONS = {"Command", "GroupCommand", "TestCall", "PathFault", "PlanResult", "RegisterType"}
 COMPARISONS_OF_DIALECTS = 67
-COMMENTS_WITH_OF = 186
+COMMENTS_WITH_OF = 82
 
 source = pathlib.Path(sys.argv[1])
 wrong = []

@@ -73,8 +73,8 @@ struct CommandBlock : CommandState {
 
     MotionError check() const;
 
-    /// Of what the axis does on top of its motion, or of its master: how far the command has come,
-    /// and what it has covered since it ended.
+    /// How far a command has come that the axis does on top of its motion, or of its master's, and
+    /// what it has covered since it ended.
     double covered(const Context& context, const Axis::Running Axis::*running) const;
 };
 

@@ -24,7 +24,7 @@ struct DigitalInputs {
 /// Outputs: MC_WriteDigitalOutput sets them. What a task has written counts in the first scan after
 /// that task has published it, as a command to an axis does.
 struct DigitalOutputs {
-    /// Of an output: what was written last, the number of that writing, and of the last that
+    /// What was written to an output last, the number of that writing, and that of the last which
     /// counts.
     struct Write {
         bool waits = false, value = false;

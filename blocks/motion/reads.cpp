@@ -149,6 +149,16 @@ void ReadActualPosition::scan(const Scan&, const Context& context) {
     if (const Axis* seen = look(context)) position = seen->actual().position;
 }
 
+std::span<const Field> ReadSetPosition::fields() {
+    static const auto table =
+        read_table({output("Position", &ReadSetPosition::position, "{Axis}", "of the set-point")});
+    return table;
+}
+
+void ReadSetPosition::scan(const Scan&, const Context& context) {
+    if (const Axis* seen = look(context)) position = seen->position;
+}
+
 std::span<const Field> ReadActualVelocity::fields() {
     static const auto table =
         read_table({output("Velocity", &ReadActualVelocity::velocity, "{Axis}/s", "of the axis")});

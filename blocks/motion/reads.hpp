@@ -84,6 +84,16 @@ struct ReadActualPosition : ReadBlock {
     void scan(const Scan& now, const Context& context);
 };
 
+/// MC_ReadSetPosition, beyond the standard: the set-point, also where the axis has a drive.
+struct ReadSetPosition : ReadBlock {
+    double position = 0;
+
+    static constexpr std::string_view type = "MC_ReadSetPosition";
+    static constexpr std::string_view doc = "tells where an axis is to be";
+    static std::span<const Field> fields();
+    void scan(const Scan& now, const Context& context);
+};
+
 struct ReadActualVelocity : ReadBlock {
     double velocity = 0;
 

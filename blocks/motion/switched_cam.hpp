@@ -15,7 +15,7 @@ struct Stretch {
     double further = 0;  ///< positions are places + further
     double period = 0;   ///< of a modulo axis, else 0
 
-    /// Of a modulo axis no more than its last turn, at the same speed.
+    /// On a modulo axis no more than its last turn, at the same speed.
     Stretch last_turn() const;
     /// A part from 0 to 1 of the way, as a time.
     std::int64_t time_at(double part) const;

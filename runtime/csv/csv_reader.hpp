@@ -32,7 +32,7 @@ struct CsvColumn {
     std::vector<Large> large;              ///< integers from 2^53 on, which `values` rounds; by row
     std::vector<std::size_t> not_numbers;  ///< rows whose cell is NaN; from the first on
 
-    /// Of the name that stands at `place`.
+    /// The number of the name that stands at `place`.
     Wide number(std::size_t place) const {
         return numbers.empty() ? static_cast<Wide>(place) : numbers[place];
     }

@@ -13,7 +13,7 @@ namespace lineshaft::debug {
 
 namespace {
 
-/// Of tasks, whose frames stand behind those of routines.
+/// Frames of tasks are numbered from here on, behind those of routines.
 constexpr std::int64_t first_task_frame = 1'000'000;
 
 class Adapter final : Front {

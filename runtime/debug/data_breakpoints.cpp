@@ -10,7 +10,7 @@ namespace lineshaft::debug {
 
 namespace {
 
-/// Of variables that begin anew with each call of what runs there.
+/// Whether variables at `at` begin anew with each call of what runs there.
 bool is_of_call(const Frame& frame, const std::byte* at) {
     const st::Routine& routine = *frame.routine;
     const bool is_body = !routine.owner && !routine.is_function();

@@ -238,14 +238,14 @@ class Reckoning {
         return true;
     }
 
-    /// Of another block of the program.
+    /// A signal of another block of the program.
     std::optional<Operand> signal(std::string_view name) const {
         const Signal* signal = frame_.machine->find(name);
         if (!signal) return {};
         return operand(signal->value(), *signal, is_single(signal->port));
     }
 
-    /// Of a signal, or of a block's field.
+    /// The value of a signal, or of a block's field.
     template <class Named>
     Operand operand(const Value& value, const Named& named, bool is_narrow) const {
         using Is = lineshaft::Type;
@@ -286,8 +286,8 @@ class Reckoning {
                                              .maximum == double{std::numeric_limits<float>::max()};
     }
 
-    /// Of VAR_GLOBAL: `x`, and with the name of its list, whether programs have to write that or
-    /// not.
+    /// A variable of VAR_GLOBAL: `x`, and with the name of its list, whether programs have to
+    /// write that or not.
     const st::Variable* global_of(std::string_view list, std::string_view name) const {
         const std::string full =
             list.empty() ? std::string(name) : fmt::format("{}.{}", list, name);

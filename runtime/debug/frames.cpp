@@ -64,7 +64,7 @@ class Pile {
   public:
     Pile(std::byte* root, st::SlotRange slots) : root_(root), next_(slots.first), end_(slots.end) {}
 
-    /// Of a call that ran on that frame already; null: there is no such record.
+    /// The record of a call that ran on that frame already; null: there is none.
     std::byte* kept(std::uint64_t slots, std::uint64_t address, std::uint64_t running) {
         for (std::uint64_t at = next_; at + slots + st::record_end <= end_; ++at) {
             st::meaning::Frames::Record record;

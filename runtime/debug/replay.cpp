@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Of this thread [ns].
+/// What this thread has taken of a processor [ns].
 std::int64_t cpu_time() {
     timespec now{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

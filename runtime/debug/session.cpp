@@ -219,7 +219,7 @@ bool Session::hits(const st::Halt& halt, Stop& stop, bool tells) {
     return !stop.breakpoints.empty();
 }
 
-/// Of a search for what changed some bytes: it was what came before this.
+/// A search for what changed some bytes ends: it was what came before this.
 void Session::watch(const Position& now, bool is_statement) {
     Search& search = *search_;
     if (search.plan.command.way != Way::writer) return;

@@ -107,7 +107,7 @@ class Session final : Observer, EventSink {
     /// What was changed by hand, for `lineshaft run --recording`; empty: nothing was.
     std::string recording() const;
 
-    /// Of the executive's state: the same number, the same state.
+    /// A hash of the executive's state: the same number, the same state.
     std::string fingerprint() const;
 
     /// In place of those that the file had: see Breakpoints. What they are come to is counted from

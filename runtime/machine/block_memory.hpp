@@ -21,7 +21,7 @@ struct HugePages {
     bool operator==(const HugePages&) const = default;
 };
 
-/// Of a machine's blocks and inputs.
+/// Memory of a machine's blocks and inputs.
 using BlockMemory = std::vector<std::byte, HugePages>;
 
 }  // namespace lineshaft

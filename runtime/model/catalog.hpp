@@ -196,7 +196,7 @@ class Catalog {
     }
 
     const BlockType* find(std::string_view name) const;
-    /// Of a kind that the catalogue lacks on purpose what to do instead; empty for any other.
+    /// What to do instead of a kind that the catalogue lacks on purpose; empty for any other.
     std::string_view instead_of(std::string_view name) const;
     const std::vector<BlockType>& types() const { return types_; }
     std::vector<std::string> names() const;

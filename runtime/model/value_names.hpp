@@ -16,9 +16,9 @@ namespace lineshaft {
 class ValueNames {
   public:
     constexpr ValueNames() = default;
-    /// Of 0, 1, 2, ..., which are written as names alone.
+    /// The numbers are 0, 1, 2, ..., which are written as names alone.
     constexpr ValueNames(std::span<const std::string_view> names) : names_(names) {}
-    /// Of these numbers, one for each name, which are written, too; names may share one. `type` is
+    /// Each name has one of these numbers, which are written, too; names may share one. `type` is
     /// what the enumeration is called.
     constexpr ValueNames(std::string_view type, std::span<const std::string_view> names,
                          std::span<const std::int64_t> numbers)
@@ -60,7 +60,7 @@ class ValueNames {
 
     constexpr std::string_view type() const { return type_; }
     constexpr bool may_be_written_as_numbers() const { return !numbers_.empty(); }
-    /// Of the name that stands at `place`, as it is stored.
+    /// The number that the name at `place` is stored as.
     constexpr std::int64_t number(std::size_t place) const {
         return numbers_.empty() ? static_cast<std::int64_t>(place) : numbers_[place];
     }

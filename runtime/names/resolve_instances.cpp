@@ -30,7 +30,7 @@ void construct(Instance& block) {
     block.type->construct(block.image.data());
 }
 
-/// Of the sources, or else of the catalogue; beside a program `Axis` its `axis` is meant as that.
+/// A type of the sources, else of the catalogue; beside a program `Axis` its `axis` is that one.
 const BlockType* type_called(const Resolving& to, std::string_view name) {
     const BlockType* own = to.net.kinds ? to.net.kinds->find(name) : nullptr;
     const BlockType* known = to.catalog.find(name);

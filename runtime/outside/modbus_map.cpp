@@ -54,7 +54,7 @@ std::string_view usual_type(const Signal& signal) {
     return signal.type == Type::real ? "real32" : is_integer(signal.type) ? "int32" : "uint16";
 }
 
-/// Of an address of the process image a type of its size.
+/// An address of the process image has a type of its size.
 std::string_view usual_type(const Target& target) {
     const auto address = read_address(target.signal.name, AddressCount::words);
     if (!address || !is_integer(target.signal.type)) return usual_type(target.signal);

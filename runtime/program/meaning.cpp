@@ -113,7 +113,7 @@ Meaning meaning_of(const Program& program) {
     const Canonical canonical(Canonical::Parameters::in_force);
     Meaning meaning{.in_force = {}, .form = hash_of_form(program), .controller = {}};
     if (program.controller)
-        meaning.controller = text_hash(canonical.root(*program.controller, {"title"}));
+        meaning.controller = text_hash(canonical.root(*program.controller, {"title", "notes"}));
     std::string text = canonical.root(program.root, without_meaning);
     for (const ForcePlan& force : program.forces)
         text += fmt::format("{} {} {} {} ", force.from, force.until, force.signal.text,

@@ -274,6 +274,7 @@ void ProgramReader::controller(const Node& node) {
     Program controller;
     read_form(controller_form(), read_, *root, controller);
     program_.tasks = std::move(controller.tasks);
+    program_.notes = std::move(controller.notes);
     program_.instruction_times = controller.instruction_times;
     program_.controller_name = node;
     program_.controller = std::move(*root);
@@ -336,7 +337,7 @@ void ProgramReader::find_source(const Node& named) {
     for (const std::string& file : files) read_source_file(file, named.mark);
 }
 
-/// Of a `.plcproj` that another one refers to as its library; empty: it is none.
+/// The namespace of a `.plcproj` that another refers to as its library; empty: it is none.
 std::string ProgramReader::namespace_of(const std::string& path) {
     if (fs::path(path).extension() != ".plcproj") return {};
     const projects::ProjectNames& own = projects_.emplace_back(projects::names_of_plcproj(path));

@@ -148,6 +148,8 @@ const Form& controller_form() {
                 "say what starts it",
          .keys = {key("lineshaft_controller", a_version, "version of this form").must(),
                   key("title", a_value.as("the title"), "what it is"),
+                  key<&Program::notes>("notes", one_or_list(a_value.as("a note")),
+                                       "said in reports of its programs' traces, before their own"),
                   tasks_key<read_controller_tasks>("its tasks").must(),
                   key<read_instruction_time>(
                       "instruction_time", a_form(instruction_time_form),

@@ -12,7 +12,7 @@ namespace lineshaft {
 namespace {
 
 constexpr YamlLimits recording_limits{.bytes = 256 << 20};
-/// Of one that is not written as `serve` does it.
+/// Limits of a recording that is not written as `serve` does it.
 constexpr YamlLimits other_limits{
     .bytes = 256 << 20, .nodes = 1'000'000, .scalar_bytes = 256 << 20};
 

@@ -18,7 +18,7 @@ struct Package {
     std::vector<std::string> dependencies;
 };
 
-/// Of `apax.yml` in that folder; empty: there is none, or it names nothing.
+/// What `apax.yml` in that folder says; empty: there is none, or it names nothing.
 Package package_in(const fs::path& folder) {
     Package made;
     Diagnostics unread;

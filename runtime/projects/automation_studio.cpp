@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view mapp_form = ".var";
 
-/// Of files with statements that are not read; any other, a list of revisions, says nothing of what
-/// runs.
+/// Endings of files with statements that are not read; any other, a list of revisions, says nothing
+/// of what runs.
 constexpr std::string_view unread_languages[] = {".ab",  ".as",  ".c",  ".cfc",
                                                  ".cpp", ".fbd", ".il", ".sfc"};
 

@@ -9,6 +9,7 @@
 
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/reader.hpp"
 
 namespace lineshaft::projects {
 
@@ -26,16 +27,11 @@ constexpr std::pair<std::string_view, std::string_view> classes_of_system[] = {
     {"TcRTimeEventClass", "{92F05393-06A8-48C2-8871-EAA38C1E3990}"},
     {"Win32EventClass", "{4ABEFBBF-6620-4349-91AD-E6110A3BE851}"}};
 
-bool is_name(std::string_view text) {
-    return !text.empty() && is_letter(text.front()) &&
-           std::ranges::all_of(text, [](char c) { return is_letter(c) || is_digit(c); });
-}
-
 constexpr bool is_hex(char c) {
     return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'f');
 }
 
-/// Of `{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}`; empty: it is none.
+/// The GUID `{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}` as a value; empty: it is none.
 std::string guid_value(std::string_view text) {
     std::string digits;
     for (const char c : text)
@@ -48,7 +44,7 @@ std::string guid_value(std::string_view text) {
                        digits.substr(0, 8), digits.substr(8, 4), digits.substr(12, 4), bytes);
 }
 
-/// Of `29` or `#x1D`; empty: it is none.
+/// The number `29` or `#x1D` as a literal; empty: it is none.
 std::string number_value(std::string_view text) {
     const bool has_letters = text.starts_with("#x");
     if (has_letters) text.remove_prefix(2);
@@ -96,7 +92,7 @@ class EventClasses {
         const Mark place = file.mark_of_tag(type);
         const std::string name = file.plain(type.child("Name"));
         const std::string guid = guid_value(file.plain(type.child("Name").attribute("GUID")));
-        if (!is_name(name) || guid.empty() || !known_.insert(lower(name)).second) return;
+        if (!is_identifier(name) || guid.empty() || !known_.insert(lower(name)).second) return;
         types_.write(fmt::format("TYPE TC_EVENTS_{} : STRUCT\n", name), place);
         std::set<std::string> events;
         for (const pugi::xml_node event : type.children("EventId")) {
@@ -104,7 +100,7 @@ class EventClasses {
             const std::string number =
                 number_value(file.plain(event.child("Name").attribute("Id")));
             const std::string severity = file.plain(event.child("Severity"));
-            if (!is_name(called) || number.empty() || !events.insert(lower(called)).second)
+            if (!is_identifier(called) || number.empty() || !events.insert(lower(called)).second)
                 continue;
             types_.write(
                 fmt::format("{} : TcEventEntry := (uuidEventClass := {}, nEventId := {}, "

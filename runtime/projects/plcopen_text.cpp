@@ -343,7 +343,7 @@ void PlcopenText::add_member(pugi::xml_node member) {
     write("END_METHOD\n", member);
 }
 
-/// Of what declares variables that are gone when it returns.
+/// Adds the body of what declares variables that are gone when it returns.
 void PlcopenText::add_own_body(pugi::xml_node owner, pugi::xml_node named) {
     MadeVariables variables;
     const auto outer =

@@ -163,7 +163,7 @@ class SimaticObject {
         write("END_STRUCT;\nEND_TYPE\n", object);
     }
 
-    /// Of its own, or an instance; values of parts of its members are assigned.
+    /// It has members of its own, or is an instance; values of their parts are assigned.
     void add_data_block(pugi::xml_node object) {
         kind_ = Kind::data_block;
         write("DATA_BLOCK ", object);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t usual_ms[] = {10, 20, 50, 100, 200, 500, 1000, 10};
 
-/// Of `Cyclic#4`; 0: it is not cyclic.
+/// 4 of `Cyclic#4`; 0: it is not cyclic.
 std::size_t number_of_class(std::string_view name) {
     constexpr std::string_view before = "Cyclic#";
     if (!name.starts_with(before) || name.size() != before.size() + 1) return 0;

@@ -45,7 +45,7 @@ class XmlFile : public PlacedFile {
     Mark mark_of_tag(pugi::xml_node element) const { return mark(tag(element)); }
     /// As it is written, with its entities; an empty part: there is none.
     Part part(pugi::xml_attribute attribute) const { return part_of(attribute.value()); }
-    /// Of the text and CDATA below an element, in the order of the file.
+    /// The text and CDATA below an element, in the order of the file.
     std::vector<Part> texts(pugi::xml_node element) const;
 
     /// Without entities.

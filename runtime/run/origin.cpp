@@ -29,7 +29,7 @@ std::string text_of(const ForcePlan& force) {
 TraceOrigin origin_of(const Loaded& loaded) {
     const auto& [program, linked] = loaded;
     const Meaning meaning = meaning_of(program);
-    // Of nothing, [] and push_back() leave half an object where memory ends.
+    // [] and push_back() on nothing leave half an object where memory ends.
     Json run{{"program", file_name(program.file->path)}, {"form", meaning.form}};
     Json parameters = Json::object(), forces = Json::array(), replays = Json::array();
     for (const auto& [name, value] : program.parameters) parameters[name] = value;

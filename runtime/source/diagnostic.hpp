@@ -48,8 +48,8 @@ struct SourceFile {
     std::string part = {};  ///< which of several texts that one file holds; empty: the only one
     std::vector<Excerpt> excerpts = {};  ///< of a text that does not stand like this in a file
     std::string read_as = {};  ///< `.var`: a name's ending that says how, where its own does not
-    /// Of what it was made of, and warnings: told by who compiles it, so that nobody minds what is
-    /// not used.
+    /// Mistakes in what it was made of, and warnings: who compiles it tells them, so that nobody
+    /// minds what is not used.
     std::vector<Diagnostic> mistakes = {};
 
     /// `lineshaft_study:` at the beginning of a line: what kind of file it is, before it is read.

@@ -31,7 +31,7 @@ class Reader {
     bool identifier(const Node& node, std::string_view what) const;
 
     std::optional<bool> boolean(const Node& node) const;
-    /// Of 64 bits, with or without a sign. `help` is for a number with a unit.
+    /// A number of 64 bits, with or without a sign. `help` is for one with a unit.
     std::optional<Wide> whole(const Node& node, std::string help = {}) const;
     /// Likewise, of those with a sign.
     std::optional<std::int64_t> integer(const Node& node, std::string help = {}) const;

@@ -1247,7 +1247,7 @@ class SourceMaker {
         return "(" + text + ")";
     }
 
-    /// Of the block at hand, which may be one that others replace.
+    /// Calls a method of the block at hand, which may be one that others replace.
     void call_own_method() {
         const Callable& callable = choices_.one_of(class_->methods).call;
         call_bounded([&] { call(callable, "THIS^." + callable.name); });

@@ -1312,7 +1312,7 @@ class CWriter {
         return made(type, fmt::format("{0} {1} {2} ? {0} : {2}", b, greatest ? ">" : "<", a));
     }
 
-    /// Of MOVE, MIN and MAX.
+    /// Writes MOVE, MIN and MAX.
     std::string one_of(const Type& type, const StandardFunction& f,
                        const std::vector<std::string>& a) {
         std::string so_far = a[0];

@@ -160,7 +160,7 @@ void in_structured_text(benchmark::State& state, const char* name, Way way) {
     measure(state, scan, std::get<double>(result), result_by_hand<Block>());
 }
 
-/// Of the object that `peers` made: `NAME_begin()`, then `NAME_scan(n, now)` gives `out`.
+/// Runs the object that `peers` made: `NAME_begin()`, then `NAME_scan(n, now)` gives `out`.
 template <class Block>
 void by_peer(benchmark::State& state, const std::string& name) {
     const char* file = std::getenv("LINESHAFT_PEER");

@@ -79,7 +79,7 @@ std::string_view head_of(std::string_view text, const std::string& name) {
     return {};
 }
 
-/// Of each library that has it, alone or as `Tc2_MC2.MC_MoveModulo`; false: none has.
+/// Describes it in each library that has it, alone or as `Tc2_MC2.MC_MoveModulo`; false: none has.
 bool describe_of_libraries(const Catalog& catalog, const std::string& name) {
     bool any = false;
     for (const LibraryFile& file : catalog.libraries()) {

@@ -35,7 +35,7 @@ std::string cause_of(const Diagnostic& diagnostic) {
     return cause;
 }
 
-/// Of a file, where what one text of a project has of it begins.
+/// The line of a file at which what a text of the project has of it begins.
 struct Part {
     std::size_t source = 0;
     int first = 0;

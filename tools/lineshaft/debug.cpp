@@ -109,7 +109,7 @@ struct FoundTest {
     std::shared_ptr<const SourceFile> file;
 };
 
-/// Of a file of tests, or of a folder with such files: the one of that name, else the first that
+/// The test of that name in a file of tests, or in a folder with such files, else the first that
 /// begins so.
 std::optional<FoundTest> find_test(const std::string& path, const std::string& name,
                                    Diagnostics& out) {

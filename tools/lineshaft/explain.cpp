@@ -22,7 +22,7 @@ constexpr Topic topics[] = {
 #include "tools/lineshaft/topics.inc"
 };
 
-/// Of the topic that tells of faults the paragraph under that name; empty: there is none.
+/// The paragraph under that name in the topic that tells of faults; empty: there is none.
 std::string_view fault_text(std::string_view name) {
     const auto faults = std::ranges::find(topics, "faults", &Topic::name);
     const std::size_t at = faults->text.find(fmt::format("\n\n{}\n  ", name));

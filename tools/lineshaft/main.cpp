@@ -120,7 +120,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
     return fmt::format("there is no command '{}'; {}", word, lineshaft::suggest(word, names));
 }
 
-/// Of an option that is not known the one that is meant.
+/// The option that is meant by one that is not known.
 std::string meant_options(const CLI::App& command, const CLI::Error& error) {
     if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return {};
     std::vector<std::string> names;

@@ -81,7 +81,7 @@ std::vector<NewBlock> called_by_tasks(const st::Library& library, const std::vec
     return blocks;
 }
 
-/// Of sources without a PROGRAM an instance of each FUNCTION_BLOCK that a program's file can have:
+/// For sources without a PROGRAM an instance of each FUNCTION_BLOCK that a program's file can have:
 /// one that is given no variables of others but axes. `MyTimer` is my_timer.
 std::vector<NewBlock> instances_of(const st::Library& library, const std::string& task) {
     std::vector<NewBlock> blocks;

@@ -148,7 +148,7 @@ std::string path_from(const std::filesystem::path& file, const std::string& path
         .string();
 }
 
-/// Of several the one that has tasks, or that no other is built on.
+/// The project of several that has tasks, or that no other is built on.
 std::optional<WholeProject> chosen_project(const std::string& path, Diagnostics& out) {
     std::vector<WholeProject> all = read_projects(path, {}, out);
     if (all.size() == 1) return all.front();

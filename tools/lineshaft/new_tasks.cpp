@@ -46,7 +46,7 @@ void add_organization_blocks(const projects::Project& project, std::set<std::str
     add_all({clock_memory}, "clock_memory", {{}, 50'000'000, 17, {}});
 }
 
-/// Of a variable that stands in a list, or of an address, which is an input where it is of area I.
+/// The signal of a variable in a list, or of an address, which is an input where it is of area I.
 std::string signal_of(std::string_view variable) {
     if (lower(variable).starts_with("%i"))
         return fmt::format("inputs.{}", plain_name(variable.substr(1)));

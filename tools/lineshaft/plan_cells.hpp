@@ -6,7 +6,7 @@
 
 #include "runtime/source/input_file.hpp"
 
-/// Of `lineshaft plan`.
+/// The cells that `lineshaft plan` reads and writes.
 namespace lineshaft::bulk {
 
 inline constexpr std::size_t longest_line = 65536;

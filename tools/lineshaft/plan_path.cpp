@@ -206,7 +206,7 @@ std::string PathPlanner::read_quantity(std::string_view cell, std::size_t column
     return read_number(has_unit ? trimmed(cell.substr(0, end)) : cell, columns[column], value);
 }
 
-/// Of a line that is wrong, too, which path it is of.
+/// Tells also of a line that is wrong which path it is of.
 std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point, double& path) {
     std::array<double, columns.size()> value{};
     value[path_column] = path;

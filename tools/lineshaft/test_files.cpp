@@ -69,7 +69,7 @@ projects::Project project_of(const std::string& path) {
     return read_project(path, {}, unread);
 }
 
-/// Of a project of another tool: some program of it runs suites of TcUnit.
+/// Whether some program of another tool's project runs suites of TcUnit.
 bool has_suites(const std::string& path) {
     return std::ranges::any_of(project_of(path).sources, st::calls_suites);
 }

@@ -26,7 +26,7 @@ class Archive {
     static pugi::xml_node root(pugi::xml_node body) {
         return body.child("XmlArchive").child("Data").child("o");
     }
-    /// Of an object: its member of that name.
+    /// The object's member of that name.
     static pugi::xml_node member(pugi::xml_node object, std::string_view name);
     /// What is in a list, `<n />` too.
     static std::vector<pugi::xml_node> items(pugi::xml_node list);

@@ -46,7 +46,7 @@ std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) 
                             : context_.types.of_output(instance, line.pin);
 }
 
-/// Of the variables that a result goes to, else of what it is reckoned with.
+/// The type of the variables that a result goes to, else of what it is reckoned with.
 std::string NetworkText::type_of_takers(std::size_t i) const {
     std::set<std::size_t> seen;
     for (const bool are_variables : {true, false})

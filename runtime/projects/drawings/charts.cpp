@@ -70,7 +70,7 @@ class ChartText {
     pugi::xml_node chart_, pou_;
     std::map<std::string, pugi::xml_node> by_id_;
     std::map<std::string, Nodes> behind_;  ///< by `localId`: what lines lead to
-    /// Of MatIEC's transitions: what their lines carry.
+    /// What the lines of MatIEC's transitions carry.
     std::vector<std::pair<pugi::xml_node, Excerpts>> drawn_;
     std::string networks_;  ///< the action that evaluates what leads to them
     BodyText made_;

@@ -349,7 +349,7 @@ class FunctionChart {
         return words(item.instance.empty() ? item.text : item.instance, place_of(item));
     }
 
-    /// Of a block its output; of a function what it gave when it was evaluated, or gives now.
+    /// A block's output; what a function gave when it was evaluated, or gives now.
     Value value_of_box(ChartItem& item, std::size_t pin) {
         const Mark place = place_of(item);
         const bool has_eno = !item.outputs.empty() && st::same_name(item.outputs[0].name, "eno");

@@ -187,7 +187,7 @@ Value NetworkText::value_of(const Line& line, bool is_enabled) {
     return value;
 }
 
-/// Of what is no box.
+/// The value of an element that is no box.
 Value NetworkText::value_of_element(std::size_t i) {
     const Element& element = drawing_.elements[i];
     State& state = states_[i];

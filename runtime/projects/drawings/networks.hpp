@@ -24,9 +24,9 @@ class MadeVariables {
     void declare(std::string_view name, std::string_view type);
     /// What the block declares itself; of a name with two types neither is known.
     void know(std::string_view name, std::string_view type);
-    /// Of `#count`, which the block declares; empty: not known.
+    /// The type of `#count`, which the block declares; empty: not known.
     std::string known_type(std::string_view variable) const;
-    /// Of what is no variable: `_action2`.
+    /// A new name for what is no variable: `_action2`.
     std::string name(std::string_view prefix) { return fmt::format("{}{}", prefix, ++count_); }
     /// `_wire1 : BOOL;` and so on; empty: none.
     const std::string& declarations() const { return declarations_; }

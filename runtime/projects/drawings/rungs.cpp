@@ -18,7 +18,7 @@ using st::Cursor;
 using st::Token;
 using st::Word;
 
-/// Of a name with its parts, or of a literal: an atom.
+/// The form of a name with its parts, or of a literal, is an atom.
 Value::Form form_of(std::string_view text) {
     char quote = 0;
     int depth = 0;

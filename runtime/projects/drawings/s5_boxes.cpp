@@ -78,7 +78,7 @@ Value run_box(Running& r, std::string_view function, std::string_view number,
     return behind.is_empty() ? r.power : behind;
 }
 
-/// Of a timer or a counter without outputs.
+/// Runs a timer or a counter without outputs.
 Value run_coil(Running& r, std::string_view function, const std::vector<Argument>& given) {
     r.to.append(r.call(function, given).text);
     r.write(";\n");

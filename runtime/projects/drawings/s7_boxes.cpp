@@ -213,7 +213,7 @@ Value with_pins(const Running& r, std::string_view before, bool& has_words) {
     return made;
 }
 
-/// Of a whole number; 0 of any other type.
+/// The bits of a whole number; 0 of any other type.
 int bits_of(std::string_view type) {
     static constexpr std::pair<std::string_view, int> all[] = {
         {"sint", 8}, {"usint", 8}, {"int", 16}, {"uint", 16}, {"dint", 32}, {"udint", 32}};
@@ -360,7 +360,7 @@ Value text_conversion(Running& r) {
     return power;
 }
 
-/// Of Siemens' functions that have the same names in SCL.
+/// Calls a function of Siemens that has the same name in SCL.
 Value other_function(Running& r) {
     const auto* target = r.it.find("ret_val");
     if (!target && !writes_to_out(r.it.name)) target = r.it.find("out");

@@ -32,7 +32,7 @@ Value edge_of(const Running& r, const Value& now, const Value& bit, bool is_risi
     return is_rising ? r.and_(now, r.not_(bit)) : r.and_(r.not_(now), bit);
 }
 
-/// Of its operand.
+/// An edge of the contact's operand.
 Value edge_contact(Running& r, bool is_rising) {
     const Value bit = r.operand("bit"), signal = r.operand("operand"), edge = r.wire();
     r.assign(edge, edge_of(r, signal, bit, is_rising));
@@ -46,7 +46,7 @@ Value falling_contact(Running& r) {
     return edge_contact(r, false);
 }
 
-/// Of power; the pin without a name is the bit.
+/// An edge of power; the pin without a name is the bit.
 Value edge_of_power(Running& r, bool is_rising) {
     const Value bit = r.operand("bit"), edge = r.wire();
     const Value power = r.all.fixed(r.to, r.power, r.it.place);
@@ -219,7 +219,7 @@ Value failed_return_coil(Running& r) {
     return returned(r, "ENO := FALSE;\n");
 }
 
-/// Of two that are TRUE at once the one whose input has a 1 wins.
+/// Where both inputs are TRUE the one whose name has a 1 wins.
 Value flip_flop(Running& r, bool set_wins) {
     const bool is_box = !r.it.callee.is_empty();
     const Value state = is_box ? r.it.callee : r.operand("operand");

@@ -25,7 +25,7 @@ struct S7Instruction {
     bool has_eno = false;  ///< "Generate ENO": it says whether the box failed
 
     const Pin* find(std::string_view pin) const;
-    /// Of a pin, or of the operand without a name; empty: nothing is there.
+    /// What is at a pin, or the operand without a name; empty: nothing is there.
     Value value(std::string_view pin) const;
 };
 
@@ -40,7 +40,7 @@ class S7Instructions {
 
     /// Appends what `instruction` does, and gives the power behind it; `goes_on`: that is taken.
     Value run(Excerpts& to, const S7Instruction& instruction, Value power, bool goes_on);
-    /// Of those that have a name behind that of their instance, `#delay.TON`.
+    /// Whether an instruction of that name stands behind its instance, `#delay.TON`.
     static bool has_instance(std::string_view name);
     /// A variable for what comes out of a box into another, of the type that its template says.
     Value result_of(const S7Instruction& instruction);

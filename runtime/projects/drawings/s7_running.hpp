@@ -25,7 +25,7 @@ struct Running {
     Value power;
     bool goes_on;  ///< who stands behind it takes power
 
-    /// Of a pin at which something must be; else that is told.
+    /// What is at a pin; where nothing is, that is told.
     Value operand(std::string_view pin) const;
     /// As a value of the type that the box calculates in, where that is a number or a
     /// bit string. A literal takes it from what stands beside it.

@@ -213,7 +213,7 @@ void StepChart::add_transition(pugi::xml_node transition, Open& open) {
     open.conditions = {transitions_.size() - 1};
 }
 
-/// Of a parallel branch all stretches are left together; of another each goes on by itself.
+/// All stretches of a parallel branch are left together; each of another goes on by itself.
 void StepChart::add_branch(pugi::xml_node branch, Open& open, int& row) {
     const bool is_parallel = is(branch, is_parallel_id);
     const Open before = std::exchange(open, {});

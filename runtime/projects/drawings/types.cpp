@@ -34,7 +34,7 @@ bool has(const List& list, std::string_view name) {
     return std::ranges::find(list, name) != std::end(list);
 }
 
-/// Of arguments that are meant to be of one type. A number without one takes that of the others.
+/// The type that arguments are meant to share. A number without one takes that of the others.
 std::string common_type(std::span<const std::string> types) {
     std::string common;
     for (const std::string& one : types) {

@@ -29,11 +29,11 @@ class NetworkTypes {
   public:
     NetworkTypes(const DeclaredTypes& declared, const std::string& pou);
 
-    /// Of what is written at a variable: `a`, `timer.Q`, `T#1s`, `2.5`.
+    /// The type of what is written at a variable: `a`, `timer.Q`, `T#1s`, `2.5`.
     std::string of_expression(std::string_view expression) const;
     std::string of_output(std::string_view instance, std::string_view pin) const;
     std::string of_declared(std::string_view pou, std::string_view variable) const;
-    /// Of a function's result, from the types of its arguments.
+    /// The type of a function's result, from those of its arguments.
     std::string of_call(std::string_view function, const std::vector<std::string>& arguments) const;
     /// Whether all arguments and the result are of one type: `ADD`, `MAX`, `LIMIT`.
     bool is_of_one_type(std::string_view function) const;

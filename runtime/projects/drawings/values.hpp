@@ -46,7 +46,7 @@ bool compares(std::string_view function);
 /// That needs no quotes behind a '.', or before a ':='.
 bool is_plain(std::string_view name);
 
-/// Of an expression as it is written at an element.
+/// The shape of an expression that is written at an element.
 Value::Form shape_of(std::string_view expression);
 
 }  // namespace lineshaft::projects

@@ -140,7 +140,8 @@ std::vector<Argument> one_by_one(Checking& c, const Expression& list) {
         }
         Expression* count = argument.value->operands[0];
         const auto times = check_whole(c, count, lint_type);
-        const auto parts = static_cast<Wide>(argument.value->arguments.size());
+        const auto parts =
+            static_cast<Wide>(std::max<std::size_t>(argument.value->arguments.size(), 1));
         if (!times || *times < 0 || *times * parts > most_elements) return {};
         for (Wide i = 0; i < *times; ++i)
             for (const Argument& part : argument.value->arguments)
@@ -175,7 +176,8 @@ void leave_excess_out(Expression& list, Wide room) {
         if (room == 0) break;
         Expression& value = *argument.value;
         const bool is_repeated = value.kind == E::repeated;
-        const auto parts = static_cast<Wide>(is_repeated ? value.arguments.size() : 1);
+        const auto parts =
+            static_cast<Wide>(is_repeated ? std::max<std::size_t>(value.arguments.size(), 1) : 1);
         const Wide times = is_repeated ? value.operands[0]->constant.integer : 1;
         const Wide whole = std::min(times, room / parts);
         if (is_repeated) value.operands[0]->constant.integer = whole;

@@ -163,6 +163,7 @@
     OP(atan, real, "wr--", put(a, Sleef_cinz_atand1_u10purec(R(b))))                                 \
     OP(atan2, real, "wrr-", put(a, Sleef_cinz_atan2d1_u10purec(R(b), R(c))))                         \
     OP(atanh, real, "wr--", put(a, Sleef_cinz_atanhd1_u10purec(R(b))))                               \
+    OP(tanh, real, "wr--", put(a, Sleef_cinz_tanhd1_u10purec(R(b))))                                 \
     OP(power, real, "wrr-", put(a, Sleef_cinz_powd1_u10purec(R(b), R(c))))                           \
     OP(floor, real, "wr--", put(a, std::floor(R(b))))                                                \
     OP(ceil, real, "wr--", put(a, std::ceil(R(b))))                                                  \

@@ -119,6 +119,7 @@ constexpr StandardFunction numbers[] = {
     {"ATAN2(Y, X: ANY_REAL): ANY_REAL", "the angle of the point (X, Y), -pi to pi [rad]",
      Typing::reals, emit_real, Op::atan2},
     real("ATANH(IN: ANY_REAL): ANY_REAL", "the number whose hyperbolic tangent is IN, -1 to 1", Op::atanh),
+    real("TANH(IN: ANY_REAL): ANY_REAL", "the hyperbolic tangent of IN, -1 to 1", Op::tanh),
     {"SQR(IN: ANY_REAL): ANY_REAL", "IN * IN", Typing::real, emit_square, Op::move, Eno::valid},
     {"FRAC(IN: ANY_REAL): ANY_REAL", "what is behind the point: IN - TRUNC(IN)", Typing::real, emit_fraction, Op::move, Eno::valid},
     {"EXPT(IN1, IN2: ANY_REAL): ANY_REAL", "IN1 to the power IN2", Word::power, Eno::valid},

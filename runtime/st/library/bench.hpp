@@ -41,7 +41,7 @@ class Bench : Witness {
     std::vector<std::uint64_t> end_of_scan() const;
     /// That again, whatever ran since.
     void end_at(std::span<const std::uint64_t> end);
-    /// Of the task that runs the unit [ns]; 1 ms else.
+    /// How long a cycle of the unit's task takes [ns]; 1 ms where it is not set.
     void set_cycle(std::int64_t cycle) { now_.interval = cycle; }
     /// A cycle goes by: the blocks beside the unit, such as axes, are scanned in each millisecond.
     void advance();

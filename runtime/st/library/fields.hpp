@@ -15,7 +15,7 @@ void write_fields(Library::Made& made, KindContext& kind, const Routine& routine
 /// Those of a data block.
 void write_fields(Library::Made& made, KindContext& kind, const Global& global);
 
-/// Of a block of tests, which names all that is beside it.
+/// Writes the fields of a block of tests, which names all that is beside it.
 void write_test_fields(Library::Made& made, KindContext& kind, const Routine& fixture);
 
 /// A kind of each data block and `VAR_GLOBAL`, and of a PROGRAM that is named and has none yet.

@@ -36,7 +36,7 @@ struct KindContext {
     const Type* type = nullptr;             ///< of the instances
     std::vector<Check> checks;              ///< inputs narrower than what a wire brings
     std::vector<std::uint32_t> references;  ///< slots of VAR_IN_OUT, which a call fills
-    /// Of a test: runs it; what it says that does not hold goes to `failure`.
+    /// Runs a test; what it says that does not hold goes to `failure`.
     std::function<std::string(std::byte* instance, const Context& context)> run_test = {};
     mutable std::string failure = {};  ///< of the last scan
 };
@@ -63,7 +63,7 @@ struct Library::Made : Compiled {
 };
 
 std::size_t element_slots(const Type& array);
-/// Of a value; of a text with room for all its characters.
+/// The slots of a value; a text has room for all its characters.
 std::size_t slots_of(const Type& type);
 
 /// What the blocks of a kind of some library share; null of any other kind.

@@ -70,7 +70,7 @@ class Library {
   public:
     std::span<const BlockType> kinds() const { return kinds_; }
 
-    /// Of an instance of a kind of this library, which was scanned.
+    /// Where an instance of a kind of this library had its fault when it was scanned.
     FaultPlace fault(const BlockType& kind, const std::byte* instance) const;
 
     /// Instructions of each class that its last scan took, calls of other blocks included; with

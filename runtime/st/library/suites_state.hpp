@@ -10,7 +10,7 @@ class SuitesState {
     /// `globals`: what the first list of globals has, the libraries'.
     SuitesState(const Compiled& made, std::byte* globals);
 
-    /// Of a program that does not use the library nothing else is asked.
+    /// Whether the program uses the library; else nothing more is asked.
     bool is_there() const { return state_ != nullptr; }
 
     std::int64_t get(std::string_view name) const;

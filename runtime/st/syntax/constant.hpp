@@ -9,7 +9,7 @@ namespace lineshaft::st {
 
 using lineshaft::Wide;
 
-/// Of two numbers within +-2^64. A product beyond Wide comes to another one outside of +-2^64.
+/// Both are within +-2^64. A product beyond Wide comes to another number outside of +-2^64.
 inline Wide product(Wide a, Wide b) {
     __extension__ using Bits = unsigned __int128;
     return static_cast<Wide>(static_cast<Bits>(a) * static_cast<Bits>(b));

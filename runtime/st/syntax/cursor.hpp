@@ -18,7 +18,7 @@ struct Cursor : Tokens {
 
     bool is(Word word) const { return here().word == word; }
     bool is_name(std::size_t ahead = 0) const { return st::is_name(next(ahead).word); }
-    /// Of a name: it is that word, which is reserved only where it has a meaning.
+    /// Whether the name is that word, which is reserved only where it has a meaning.
     bool says(std::string_view word) const { return same_name(here().text, word); }
     /// A ':' or ',' is next: what is here is the name of a variable, whatever word it is.
     bool is_declared() const { return next().word == Word::colon || next().word == Word::comma; }

@@ -98,12 +98,12 @@ struct Expression {
     /// `s[3]` of a text, which is no place of its own.
     bool is_character() const;
 
-    /// Of a list: `(x := 1, y := 2)`, `(1, 2)`, `()`.
+    /// Whether a list is `(x := 1, y := 2)`, `(1, 2)` or `()`.
     bool is_structure() const {
         return token.word == Word::open || (!arguments.empty() && arguments.front().is_named());
     }
 
-    /// Of a list: it has lists of elements again, `[[1, 2], 2([3, 4])]`, not structures,
+    /// Whether a list has lists of elements again, `[[1, 2], 2([3, 4])]`, not structures,
     /// `[(x := 1)]`.
     bool is_nested() const {
         for (const Argument& argument : arguments) {

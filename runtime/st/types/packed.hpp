@@ -10,7 +10,7 @@
 /// runtime/st has the rule.
 namespace lineshaft::st {
 
-/// Of a scalar at an address or within packed memory, as the dialect's controllers have it. Empty
+/// A scalar's form at an address or in packed memory, as the dialect's controllers have it. Empty
 /// for what has no packed form: a reference, an enumeration that takes its own numbers alone where
 /// these are not 0, 1, 2, ...
 std::optional<PackedFormat> packed_format(const Type& type, const Dialect& dialect);

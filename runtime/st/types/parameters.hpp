@@ -10,7 +10,7 @@ inline bool is_copied_in_out(const Variable& variable) {
            !variable.type->is_handle();
 }
 
-/// Of an FB: its instance has that copy from call to call.
+/// Whether an FB's instance keeps that copy from call to call.
 inline bool is_kept_in_out(const Variable& variable) {
     return is_copied_in_out(variable) && variable.of->kind == PouKind::function_block;
 }

@@ -120,11 +120,11 @@ struct Type {
         return (is_bits() || kind == Kind::integer || kind == Kind::time) && !is_signed &&
                bits == 64;
     }
-    /// Of a text: its room, and the bytes that its slots have room for.
+    /// A text's room, and the bytes that its slots have room for.
     TextRoom room() const { return {length, is_wide}; }
     std::uint32_t text_bytes() const { return is_wide ? 3 * length : length; }
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
-    /// Of an array of all its dimensions.
+    /// What an array of all its dimensions has as elements.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
     const Type& plain() const { return is_subrange || has_named_values ? *base : *this; }
     /// What a variable of it may have in a run.
@@ -205,16 +205,16 @@ struct Variable {
     Variable* edge = nullptr;    ///< of `x : BOOL R_EDGE`: the R_TRIG whose Q its name means inside
     std::string_view text = {};  ///< its name
     std::string_view doc = {};   ///< comments, as they are written
-    /// Of a UNION's member that keeps where a POINTER points, as the number that its type has.
+    /// Type of the POINTER whose place this member of a UNION keeps, as the number that it has.
     const Type* pointer = nullptr;
 
-    /// Of one call only.
+    /// Whether its value is that of one call only.
     bool ends_with_call() const {
         const bool of_call = of && (of->kind == PouKind::function || of->kind == PouKind::method);
         return space == Space::frame && (section == Section::temp || of_call);
     }
 
-    /// Of a call, by position or by name.
+    /// Whether a call may give it, by position or by name.
     bool is_parameter() const {
         return !bound_of && (section == Section::input || section == Section::in_out ||
                              section == Section::output);
@@ -283,7 +283,7 @@ struct Routine {
     bool is_function() const { return pou->kind == PouKind::function; }
     bool is_test() const { return owner && owner->pou->is_tests; }
     bool is_interface() const { return pou->kind == PouKind::interface; }
-    /// Of an interface: declared, and nothing that runs.
+    /// It is an interface's: declared, and nothing that runs.
     bool is_prototype() const { return is_interface() || (owner && owner->is_interface()); }
     bool has_instances() const {
         return pou->kind == PouKind::function_block || pou->kind == PouKind::program;
@@ -302,7 +302,7 @@ struct Routine {
     bool may_recur = false;           ///< it is in a plain ring, or calls what may be
 };
 
-/// Of a block: its variables, those of its bases first.
+/// A block's variables, those of its bases first.
 std::vector<Variable*> all_variables(const Routine& block);
 
 /// Whether it, or one of its bases, has a variable of that name.
@@ -341,7 +341,7 @@ struct Image {
     std::uint32_t begins[parts] = {};          ///< [bytes]
     std::uint32_t bytes = 0;
 
-    /// Of its bytes, from the first on.
+    /// The number of the bit at an address, from that of the first byte on.
     std::uint64_t bit_of(const ImageAddress& at) const {
         return 8 * (std::uint64_t{begins[part_of(at)]} + at.byte) + at.bit;
     }

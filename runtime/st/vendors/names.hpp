@@ -47,7 +47,7 @@ inline constexpr std::string_view siemens_step7 = "Siemens.Step7";
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
 
-/// Of a block of the catalogue that another one of CODESYS or TwinCAT extends, before its name.
+/// Stands before the name of a catalogue's block that one of CODESYS or TwinCAT extends.
 inline constexpr std::string_view extended_blocks = "Standard.extended_";
 
 /// What Siemens' programs name by `"Axis_1"` without declaring it.

@@ -258,7 +258,7 @@ blocks:
 /// LINESHAFT_GROUPS makes it longer: tools/long.
 TEST_CASE("random groups never lead their axes out of their limits") {
     const auto begin = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1));
-    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_GROUPS", 40));
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_GROUPS", 15));
     RandomGroup group;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
         const PinChanges events = group.draw(seed);

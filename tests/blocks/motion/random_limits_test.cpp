@@ -352,7 +352,7 @@ TEST_CASE("a cam that begins as a gear is reached looks for its end in a table o
 /// LINESHAFT_LIMITS makes it longer: tools/long.
 TEST_CASE("random programs never lead an axis out of its software limits") {
     const auto begin = static_cast<std::uint64_t>(count_of("LINESHAFT_SEED", 1));
-    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_LIMITS", 300));
+    const auto count = static_cast<std::uint64_t>(count_of("LINESHAFT_LIMITS", 120));
     LimitedAxes axes;
     for (std::uint64_t seed = begin; seed < begin + count; ++seed) {
         const PinChanges events = axes.draw(seed);

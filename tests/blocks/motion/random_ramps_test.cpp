@@ -55,7 +55,7 @@ std::vector<CamPoint> RampIn::points() const {
     return points;
 }
 
-/// Of a master at its velocity the cam takes a part of them.
+/// While a master is at its velocity the cam takes a part of them.
 Dynamics RampIn::limits() const {
     const std::vector<CamPoint> all = points();
     const Cam cam{all, true};

@@ -344,7 +344,7 @@ class Sums : public Sequences {
 TEST_CASE("random sums: an axis ends where the ways lead that were asked for and covered") {
     for (const CommandRules rules : {CommandRules::plcopen, CommandRules::softmotion}) {
         Sums sums(rules);
-        const std::int64_t count = count_of("LINESHAFT_SUMS", 300);
+        const std::int64_t count = count_of("LINESHAFT_SUMS", 100);
         check_sequences(sums, count, command_rules_names[static_cast<std::size_t>(rules)]);
         CHECK(sums.judged >= count);
     }

@@ -23,6 +23,8 @@ blocks:
   measured: {type: MC_ReadMotionState, task: main, Axis: x, Enable: true, Source: mcActualValue}
   info: {type: MC_ReadAxisInfo, task: main, Axis: x, Enable: true}
   other: {type: MC_ReadAxisInfo, task: main, Axis: z, Enable: true}
+  wanted: {type: MC_ReadSetPosition, task: main, Axis: x, Enable: true}
+  actual: {type: MC_ReadActualPosition, task: main, Axis: x, Enable: true}
   switched: {type: MC_ReadBoolParameter, task: main, Axis: x, Enable: true}
 )";
 
@@ -93,6 +95,18 @@ TEST_CASE("MC_ReadAxisInfo tells of drive, power, homing and limits") {
     bench.step(2);
     CHECK(bench.is("info.LimitSwitchNeg"));
     CHECK(bench.is("info.AxisWarning"));
+}
+
+TEST_CASE("MC_ReadSetPosition tells where an axis is to be, whatever its drive measures") {
+    MotionBench bench(driven);
+    bench.set("move.Execute", true);
+    bench.step(200);
+    const double before = bench.number("x.position");
+    bench.step();
+    CHECK(before > 0);
+    CHECK(bench.is("wanted.Valid"));
+    CHECK(bench.number("wanted.Position") >= before);
+    CHECK(bench.number("actual.Position") == 0);
 }
 
 TEST_CASE("MC_ReadBoolParameter knows software limits, and no number that is not a BOOL") {

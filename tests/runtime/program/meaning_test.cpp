@@ -131,10 +131,12 @@ TEST_CASE("the origin of a run names what made it, without folders") {
     const Folder folder;
     std::filesystem::create_directory(folder / "config");
     std::ofstream(folder / "config/plc.yaml")
-        << "lineshaft_controller: 1\ntitle: A controller\ntasks: {main: {every: 2 ms}}\n";
+        << "lineshaft_controller: 1\ntitle: A controller\nnotes: Its clock is guessed.\n"
+           "tasks: {main: {every: 2 ms}}\n";
     std::ofstream(folder / "in.csv") << "time,x\n0,1\n";
     std::ofstream(folder / "p.yaml") << R"(lineshaft: 1
 title: Replayed
+notes: A note.
 controller: config/plc.yaml
 parameters: {speed: 10 mm/s}
 inputs: {x: 0.0}
@@ -151,6 +153,7 @@ run: {for: 1 s, seed: 3}
     REQUIRE(loaded);
     const TraceOrigin origin = origin_of(*loaded);
     CHECK(origin.title == "Replayed");
+    CHECK(origin.notes == std::vector<std::string>{"Its clock is guessed.", "A note."});
     CHECK(origin.run["program"] == "p.yaml");
     CHECK(origin.run["parameters"]["speed"] == "2 cm/s");
     CHECK(origin.run["seed"] == 3);

@@ -18,7 +18,7 @@ struct Net {
     static std::string constant(const std::string& value) {
         return "<Constant><ConstantValue>" + value + "</ConstantValue></Constant>";
     }
-    /// Of a variable, `list[2]` or a number.
+    /// The access to a variable, `list[2]` or a number.
     std::string access(const std::string& text) {
         const std::string id = std::to_string(++count);
         const std::size_t index = text.find('[');

@@ -49,8 +49,11 @@ TEST_CASE("every case goes on with its own checkpoint, and is safe with any that
     std::mt19937_64 random(43);
     int resumed = 0;
     const auto cases = all_cases();
-    for (const std::string& program : cases)
+    const bool each = rounds() > 10;
+    for (std::size_t n = 0; n < cases.size(); ++n)
         for (const std::int64_t eighth : {1, 4, 7}) {
+            if (!each && eighth != std::array{1, 4, 7}[n % 3]) continue;
+            const std::string& program = cases[n];
             const std::int64_t time = duration_of(program) * eighth / 8;
             INFO(program << " at " << time << " ns");
             const KeptRun run(program, time, folder / "", false);
@@ -60,7 +63,7 @@ TEST_CASE("every case goes on with its own checkpoint, and is safe with any that
             for (int i = 0; i < rounds() / 5; ++i)
                 run.resume(damaged(run.checkpoint(), random_damage(random)));
         }
-    CHECK(resumed > std::ssize(cases));
+    CHECK(resumed > std::ssize(cases) * (each ? 3 : 1) / 3);
 }
 
 TEST_CASE("a run begins with what it retained, and is safe with any that is damaged", "[retain]") {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "blocks/catalog.hpp"
+#include "tests/count_of.hpp"
 #include "tests/runtime/st/instance.hpp"
 
 using namespace lineshaft;
@@ -276,8 +277,10 @@ std::string fault_of(unsigned seed) {
 
 }  // namespace
 
+/// LINESHAFT_CHARTS makes it longer: tools/long.
 TEST_CASE("charts: random ones do what an evaluator by the standard's words does", "[st]") {
-    for (unsigned seed = 1; seed <= 10'000; ++seed) {
+    const auto last = static_cast<unsigned>(test::count_of("LINESHAFT_CHARTS", 2500));
+    for (unsigned seed = 1; seed <= last; ++seed) {
         const std::string wrong = fault_of(seed);
         INFO("seed " << seed << ": " << wrong);
         REQUIRE(wrong.empty());

@@ -9,6 +9,7 @@
 #include "blocks/catalog.hpp"
 #include "runtime/st/library/test_suite.hpp"
 #include "runtime/st/syntax/lexer.hpp"
+#include "tests/count_of.hpp"
 #include "tests/runtime/st/instance.hpp"
 #include "tests/source_folder.hpp"
 
@@ -112,9 +113,9 @@ TEST_CASE("Structured Text: sources cut off anywhere, and with one byte changed"
     const bool all = std::getenv("LINESHAFT_ALL_BYTES") != nullptr;
     for (const std::string& text : sources()) {
         for (std::size_t end = all ? 0 : random() % 99; end < text.size();
-             end += all ? 1 : 1 + random() % 400)
+             end += all ? 1 : 1 + random() % 1200)
             try_out(text.substr(0, end));
-        for (std::size_t i = 0; i < (all ? text.size() : 15); ++i) {
+        for (std::size_t i = 0; i < (all ? text.size() : 5); ++i) {
             std::string changed = text;
             const std::size_t at = all ? i : random() % text.size();
             changed[at] = bytes[random() % bytes.size()];
@@ -137,10 +138,12 @@ TEST_CASE("Structured Text: tests cut off anywhere, with words left out, doubled
     }
 }
 
+/// LINESHAFT_WORDS makes it longer: tools/long.
 TEST_CASE("Structured Text: sources with words left out, doubled and exchanged", "[st]") {
     std::mt19937 random(8);
     for (const std::string& text : sources()) {
-        exchange_words(text, 15, random, try_out);
+        exchange_words(text, static_cast<int>(test::count_of("LINESHAFT_WORDS", 5)), random,
+                       try_out);
     }
 }
 

@@ -22,8 +22,8 @@ class Instances {
     /// `12 array_bounds` of each that ended with a fault in the last scan.
     std::vector<std::string> faults() const;
 
-    /// Of the first kind that has a field of that name, of those that are scanned if one of them
-    /// does; enumerations by their names.
+    /// The value in the first kind that has a field of that name, in one that is scanned if some
+    /// has it; enumerations by their names.
     std::string text(const std::string& field) const;
     /// Whether nothing was written before or behind an instance.
     bool is_guarded() const;

@@ -15,7 +15,7 @@ struct Meaning {
     st::Compiled compiled = {};
     std::vector<st::NameUse> uses = {};
 
-    /// Of the name at a byte of a file; null: it is none.
+    /// The use of the name at a byte of a file; null: there is none.
     const st::NameUse* find(const Asked& where) const;
     /// The block, function, method or program that the byte stands in; null: none.
     const st::Routine* routine_at(const Asked& where) const;
@@ -24,7 +24,7 @@ struct Meaning {
 
 std::shared_ptr<const Meaning> meaning_of(Session& session, const std::string& root);
 
-/// Of the text now, else as it last was when nothing in it was lost.
+/// What the text means now, else as it last was when nothing in it was lost.
 std::shared_ptr<const Meaning> whole_meaning_of(Session& session, const std::string& root);
 
 bool is_in(const st::Place& place, const std::string& path);

@@ -26,7 +26,7 @@ enum class Offered : std::uint8_t {
 /// What can be written at a place, each name once.
 class Offer {
   public:
-    /// Of units mHz and MHz are two, of Structured Text n and N one.
+    /// Units mHz and MHz are two; n and N are one in Structured Text.
     explicit Offer(bool capitals_count) : capitals_count_(capitals_count) {}
 
     void add(std::string_view label, Offered kind, std::string_view detail = {},

@@ -18,7 +18,7 @@ class Text {
   public:
     explicit Text(std::string_view text);
 
-    /// Of a position behind its line's end that end, of one behind the last line the text's end.
+    /// A position behind its line's end is that end, one behind the last line the text's end.
     std::size_t offset(const Json& position, Encoding encoding) const;
     Json position(std::size_t offset, Encoding encoding) const;
     Json range(std::size_t begin, std::size_t end, Encoding encoding) const;
@@ -37,7 +37,7 @@ class Text {
     std::vector<std::size_t> lines_{0};
 };
 
-/// Of a mark in its file, which may be a part of one.
+/// Where a mark is in its file, which may be a part of one.
 Json range_of(const Mark& mark, Encoding encoding);
 
 /// The path of a `file:` URI, without dots; empty for any other.

@@ -13,7 +13,7 @@ namespace lineshaft::lsp {
 
 namespace {
 
-/// Of bytes [begin, end) of a text, those of the name alone.
+/// The bytes of the name alone among [begin, end) of a text.
 std::pair<std::size_t, std::size_t> bytes_of_name(std::string_view text, std::size_t begin,
                                                   std::size_t end) {
     if (begin < end && text[begin] == '#') ++begin;
@@ -116,7 +116,7 @@ class NamesInYaml {
                 st::same_name(type->values[i], text_.substr(begin, last - begin)))
                 add(begin, last);
     }
-    /// Of an array, of its elements.
+    /// The part of that name; an array's is one of its elements.
     static const st::Variable* part_of(const st::Type& whole, std::string_view name) {
         const st::Type* type = &whole;
         while (type && type->kind == st::Type::Kind::array) type = type->element;

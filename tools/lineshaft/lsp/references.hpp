@@ -22,7 +22,7 @@ struct References {
     std::vector<std::shared_ptr<const Meaning>> meanings = {};  ///< of roots that have some
 };
 
-/// Of what a use in `meaning` is about. A method has its name together with those that it replaces
+/// Uses of what a use in `meaning` is about. A method shares its name with those that it replaces
 /// or implements, and those that do so with it; each of its parameters likewise.
 References references_to(Session& session, const Meaning& meaning, const st::NameUse& use);
 

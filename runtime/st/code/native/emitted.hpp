@@ -20,6 +20,7 @@ double Sleef_cinz_acosd1_u10purec(double);
 double Sleef_cinz_atand1_u10purec(double);
 double Sleef_cinz_atan2d1_u10purec(double, double);
 double Sleef_cinz_atanhd1_u10purec(double);
+double Sleef_cinz_tanhd1_u10purec(double);
 double Sleef_cinz_powd1_u10purec(double, double);
 Fault native_end(std::byte*, meaning::Frames&, std::int64_t fuel, std::uint64_t behind, Fault);
 void native_call_block(const Code&, std::byte*, std::uint32_t, const Scan&, const Context&);
