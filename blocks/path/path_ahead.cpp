@@ -34,6 +34,7 @@ struct Chain {
     std::size_t add(const PathOutlook& outlook, const PathPieces& pieces, const PathLeg& first,
                     double since, std::size_t most);
     bool has_room(const PathPieces& pieces, double to);
+    bool is_quick() const;
 };
 
 bool Chain::add(const PathLeg& leg, double since) {
@@ -88,6 +89,12 @@ bool Chain::has_room(const PathPieces& pieces, double to) {
         is_curved = is_curved || piece.curve.kind != PathCurveKind::line;
     }
     return need.intervals <= most_intervals && need.rows <= most_rows;
+}
+
+/// What is saved of so short intervals takes as long to be found (README.md, "The least time").
+bool Chain::is_quick() const {
+    constexpr double least_duration = 5e-3;  ///< of an interval [s]
+    return course.duration < least_duration * need.intervals;
 }
 
 bool is_straight(const PathPieces& pieces, double to) {
@@ -197,6 +204,10 @@ bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain
         chain.base = chain.end = base;
         legs = chain.add(outlook, pieces, leg, since, legs);
         if (legs == 0 || !chain.is_curved) return false;
+        if (chain.is_quick()) {
+            vain.until = chain.end;
+            return false;
+        }
         PathCourse found;
         const bool is_found = find_optimum(pieces, chain.course, base, outlook.factor, found);
         if (is_found && found.duration <= worth * chain.course.duration) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "blocks/profile/seven_segment.hpp"
 
@@ -14,11 +15,18 @@ struct BackwardRamp {
     SevenSegmentPlan plan;
     double entry = 0;  ///< at its start [u/s]
 
-    double velocity_before_end(double way) const {
-        std::size_t i = 6;
-        while (i > 0 && !(plan.T[i] > 0 && plan.start[i].position <= way)) --i;
-        const MotionState& s = plan.start[i];
-        return s.after(time_at_way(s, plan.T[i], way - s.position)).velocity;
+    /// How far before its end it has a velocity, which grows with the way; infinite where it is
+    /// nowhere as fast [u].
+    double way_before_end(double velocity) const {
+        std::size_t i = 0;
+        while (i < 2 && !(plan.start[i + 1].velocity > velocity)) ++i;
+        const MotionState &from = plan.start[i], &to = plan.start[i + 1];
+        if (velocity >= to.velocity) return std::numeric_limits<double>::infinity();
+        const double risen = velocity - from.velocity, rises = to.velocity - velocity;
+        if (!(risen > 0)) return from.position;
+        if (i == 0) return from.after(std::sqrt(2 * risen / from.jerk)).position;
+        if (i == 1) return from.after(risen / from.acceleration).position;
+        return from.after(plan.T[2] - std::sqrt(2 * rises / -from.jerk)).position;
     }
 
     /// From here on, counted from its end, it comes down as any ramp from a greater velocity.
@@ -40,7 +48,7 @@ bool passes_joints(PathStretches stretches, std::uint64_t k, const BackwardRamp&
     const double end = stretches[k + 1].ramp_end;
     for (std::uint64_t i = k; i < target; ++i) {
         const PathStretch& s = stretches[i];
-        if (!(ramp.velocity_before_end(end - s.end) <= s.joint)) return false;
+        if (s.joint < ramp.entry && !(end - s.end <= ramp.way_before_end(s.joint))) return false;
         if (s.end >= stretches[k + 1].settled) break;
     }
     return true;
