@@ -205,7 +205,7 @@ bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain
         legs = chain.add(outlook, pieces, leg, since, legs);
         if (legs == 0 || !chain.is_curved) return false;
         if (chain.is_quick()) {
-            vain.until = chain.end;
+            vain.until = chain.end + (chain.end - base);
             return false;
         }
         PathCourse found;

@@ -49,7 +49,7 @@ using AllBounded = std::array<Bounded, most_path_axes + 1>;
 /// Parts of a limit that the curvature alone may take: a corner is passed at nearly one speed.
 constexpr double of_acceleration = 0.9, of_jerk = 0.93, of_jerk_in_spline = 0.8;
 
-/// Of the tangents in space that lead from the direction u into w the greatest part along w - u.
+/// The greatest part along w - u that a tangent in space on the way from u to w has.
 double lean_between(const PathCurve& u, const PathCurve& w, double turn) {
     double first = 0, last = 0;
     for (std::size_t i = 0; i < path_space; ++i) {

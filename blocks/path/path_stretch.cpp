@@ -64,6 +64,12 @@ void take(PathStretch& s, const BackwardRamp& ramp, std::uint64_t target, const 
     s.settled = end - ramp.settled_way();
 }
 
+/// No ramp to its own end begins faster: it takes no longer than at the velocity there.
+double greatest_entry(const PathStretch& s, double exit) {
+    const double V = s.box.velocity, lasts = (s.end - s.begin) / exit;
+    return exit > 0 ? std::min(V, exit + 0.5 * s.box.jerk * lasts * lasts) : V;
+}
+
 /// The better one of a ramp to its own end and one to where the next stretch brakes.
 void find_entry(PathStretches stretches, std::uint64_t k) {
     PathStretch& s = stretches[k];
@@ -74,13 +80,17 @@ void find_entry(PathStretches stretches, std::uint64_t k) {
     s.span = s.box;
     s.settled = s.ramp_end = s.end;
     s.ramp_exit = 0;
-    if (plan_back(exit, V, s.box, s.end - s.begin, ramp)) take(s, ramp, k, s.box, s.end, exit);
-    if (s.entry == V || stretches.is_last(k) || stretches.is_bound_by_joint(k)) return;
-    const PathStretch& next = stretches[k + 1];
-    const PathLimit span = least_of(s.box, next.span);
-    if (next.ramp_exit <= V && plan_back(next.ramp_exit, V, span, next.ramp_end - s.begin, ramp) &&
-        ramp.entry > s.entry && passes_joints(stretches, k, ramp))
-        take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
+    if (!stretches.is_last(k) && !stretches.is_bound_by_joint(k)) {
+        const PathStretch& next = stretches[k + 1];
+        const PathLimit span = least_of(s.box, next.span);
+        if (next.ramp_exit <= V &&
+            plan_back(next.ramp_exit, V, span, next.ramp_end - s.begin, ramp) &&
+            passes_joints(stretches, k, ramp))
+            take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
+    }
+    if (s.entry <= greatest_entry(s, exit) && plan_back(exit, V, s.box, s.end - s.begin, ramp) &&
+        ramp.entry >= s.entry)
+        take(s, ramp, k, s.box, s.end, exit);
 }
 
 /// The velocity that the leg under way, and the ramps behind it, come to a stretch with; 0 where
