@@ -18,12 +18,12 @@ PathLimit random_limit(Random& random) {
 }
 
 /// A corner of two lines in space, which other axes follow.
-struct RandomCorner {
+struct BoxedCorner {
     PathLimits limits;
     PathCurve corner;
     PathLimit box;
 
-    explicit RandomCorner(Random& random) {
+    explicit BoxedCorner(Random& random) {
         const std::size_t counted = random.share() < 0.7 ? path_space : most_path_axes;
         limits.path = random_limit(random);
         for (PathLimit& axis : limits.axes) axis = random_limit(random);
@@ -64,7 +64,7 @@ TEST_CASE("path_box: all that the box of a corner allows keeps the limits of axe
     Random random(3);
     int nearly_all = 0, easily = 0;
     for (int problem = 0; problem < 2000; ++problem) {
-        const RandomCorner drawn(random);
+        const BoxedCorner drawn(random);
         const PathLimit& box = drawn.box;
         INFO("corner " << problem);
         REQUIRE(is_good(box));
