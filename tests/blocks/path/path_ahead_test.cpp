@@ -114,13 +114,20 @@ TEST_CASE("path_ahead: what is looked for in vain is looked for over fewer legs 
             CHECK(vain.until > 0);
             CHECK(vain.legs < PathCourse::most_phases);
         }
-        vain.until = 1e-3;
+        vain.until = before.end;
         PathLeg leg = before;
         CHECK_FALSE(look_ahead(outset.outlook, 0, leg, vain));
     }
     CHECK(found > 20);
     CHECK(over_fewer > 20);
     CHECK(in_vain > 3);
+}
+
+TEST_CASE("path_ahead: a leg that leads beyond what was looked at in vain is looked at") {
+    Outset outset(0, 20, 1);
+    PathVain vain;
+    vain.until = 0.99 * outset.leg.end;
+    CHECK(look_ahead(outset.outlook, 0, outset.leg, vain));
 }
 
 TEST_CASE("path_ahead: no course is looked for where a piece takes a few milliseconds") {
