@@ -272,8 +272,8 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
 
 /// After the last piece has been cut: whether what is planned holds still, or can be mended.
 bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
-    look_back_where_changed(path, ring, false);
     if (path.standing()) return true;
+    look_back_where_changed(path, ring, false);
     if (path.leg.goal < cut &&
         path.leg.end_velocity() <= stretches_of(path, ring).exit(path.leg.goal))
         return true;
@@ -327,16 +327,17 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
         last.curve = curve;
         return false;
     }
-    const Path before = path;
     constexpr double any = std::numeric_limits<double>::infinity();
+    const std::uint64_t count = path.count, stretches = path.stretches, changed = path.changed;
+    const double total = path.total;
     path.total = cut.end = last.end();
     for (std::size_t i = 0; i < round.count; ++i)
         append_piece(path, ring, round.curves[i], both, round.boxes[i], any);
     append_piece(path, ring, next, limits, box, any);
-    if (holds(path, ring, before.stretches - 1)) return true;
-    path = before;
+    if (holds(path, ring, stretches - 1)) return true;
+    path.count = count, path.stretches = stretches, path.changed = changed;
+    path.total = cut.end = total;
     last.curve = curve;
-    cut.end = before.total;
     cut.joint = 0;
     note_change(path, path.stretches - 1);
     look_back_where_changed(path, ring, false);

@@ -28,12 +28,13 @@ struct Chain {
     double base = 0, end = 0;  ///< along the path [u]
     std::uint64_t goal = 0;
     MeshNeed need;
-    bool is_curved = false;
+    bool is_curved = false, has_spline = false;
 
     bool add(const PathLeg& leg, double since);
     std::size_t add(const PathOutlook& outlook, const PathPieces& pieces, const PathLeg& first,
                     double since, std::size_t most);
     bool has_room(const PathPieces& pieces, double to);
+    bool is_quick() const;
 };
 
 bool Chain::add(const PathLeg& leg, double since) {
@@ -86,8 +87,16 @@ bool Chain::has_room(const PathPieces& pieces, double to) {
         need.intervals += of.intervals;
         need.rows += 1.3 * of.intervals * of.rows;
         is_curved = is_curved || piece.curve.kind != PathCurveKind::line;
+        has_spline = has_spline || piece.curve.kind == PathCurveKind::spline;
     }
     return need.intervals <= most_intervals && need.rows <= most_rows;
+}
+
+/// What is saved of so short intervals takes as long to be found (README.md, "The least time").
+/// Boxes of splines leave more.
+bool Chain::is_quick() const {
+    constexpr double least_duration = 5e-3;  ///< of an interval [s]
+    return !has_spline && course.duration < least_duration * need.intervals;
 }
 
 bool is_straight(const PathPieces& pieces, double to) {
@@ -190,13 +199,18 @@ bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain
     constexpr std::size_t fewest = 2;
     const double base = leg.base + leg.at(since).position;
     const PathPieces pieces = from_place(outlook.pieces, base);
-    if (base < vain.until || (leg.end_velocity() == 0 && is_straight(pieces, leg.end)))
+    const double reach = since > 0 ? base : leg.end;
+    if (reach <= vain.until || (leg.end_velocity() == 0 && is_straight(pieces, leg.end)))
         return false;
     for (std::size_t legs = vain.legs;; legs /= 2) {
         Chain chain;
         chain.base = chain.end = base;
         legs = chain.add(outlook, pieces, leg, since, legs);
         if (legs == 0 || !chain.is_curved) return false;
+        if (chain.is_quick()) {
+            vain.until = chain.end + (chain.end - base);
+            return false;
+        }
         PathCourse found;
         const bool is_found = find_optimum(pieces, chain.course, base, outlook.factor, found);
         if (is_found && found.duration <= worth * chain.course.duration) {

@@ -34,23 +34,80 @@ PathLimit tangential(const PathCurve& curve, const PathLimits& limits) {
 /// What bounds of an axis' derivatives, or of the whole vector's, belong to which limit.
 struct Bounded : PathBound {
     PathLimit limit;
+    double lean = 0;  ///< in a corner, at most: the part of the tangent that lies along the bend
+
+    /// What a limit leaves along the tangent beside so much along the bend.
+    double left(double most, double along_bend) const {
+        const double part = along_bend / most, rest = (1 - part) * (1 + part);
+        const double beside = lean * part;
+        return most * (rest / (beside + std::sqrt(beside * beside + tangent * tangent * rest)));
+    }
 };
 
 using AllBounded = std::array<Bounded, most_path_axes + 1>;
 
 /// Parts of a limit that the curvature alone may take: a corner is passed at nearly one speed.
-constexpr double of_acceleration = 0.9, of_jerk = 0.8;
+constexpr double of_acceleration = 0.9, of_jerk = 0.93, of_jerk_in_spline = 0.8;
+
+/// The greatest part along w - u that a tangent in space on the way from u to w has.
+double lean_between(const PathCurve& u, const PathCurve& w, double turn) {
+    double first = 0, last = 0;
+    for (std::size_t i = 0; i < path_space; ++i) {
+        first += u.u[i] * (w.u[i] - u.u[i]);
+        last += w.u[i] * (w.u[i] - u.u[i]);
+    }
+    return turn > 0 ? std::max(std::abs(first), std::abs(last)) / turn : 0;
+}
 
 AllBounded bounds_of_corner(const PathCurve& u, const PathCurve& w, double length,
                             const PathLimits& limits) {
-    const auto bound = [&](double tangent, double turn, const PathLimit& limit) {
-        return Bounded{{tangent, 1.5 * turn / length, 6 * turn / (length * length), 0, 0}, limit};
+    const auto bound = [&](double tangent, double turn, const PathLimit& limit, double lean) {
+        return Bounded{
+            {tangent, 1.5 * turn / length, 6 * turn / (length * length), 0, 0}, limit, lean};
     };
-    AllBounded out{bound(1, bend_between(u, w), limits.path)};
-    for (std::size_t i = 0; i < most_path_axes; ++i)
-        out[i + 1] = bound(std::max(std::abs(u.u[i]), std::abs(w.u[i])), std::abs(w.u[i] - u.u[i]),
-                           limits.axes[i]);
+    const double turn = bend_between(u, w);
+    AllBounded out{bound(1, turn, limits.path, lean_between(u, w, turn))};
+    for (std::size_t i = 0; i < most_path_axes; ++i) {
+        const double tangent = std::max(std::abs(u.u[i]), std::abs(w.u[i]));
+        out[i + 1] = bound(tangent, std::abs(w.u[i] - u.u[i]), limits.axes[i], tangent);
+    }
     return out;
+}
+
+/// In a corner the bend is greatest where there is no twist, and the other way round: what both
+/// come to together at most.
+double jerk_along_bend(double by_bend, double by_twist) {
+    return by_twist >= 2 * by_bend ? by_twist : by_bend + by_twist * by_twist / (4 * by_bend);
+}
+
+/// The box of README.md, "Corners".
+PathLimit corner_box(const AllBounded& bounds, const PathLimit& most) {
+    constexpr double for_bend = 0.5;
+    PathLimit box = most;
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        box.velocity = std::min(box.velocity, b.limit.velocity / b.tangent);
+        if (b.bend == 0) continue;
+        box.velocity =
+            std::min({box.velocity, std::sqrt(of_acceleration * b.limit.acceleration / b.bend),
+                      Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist)});
+    }
+    const double V = box.velocity;
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        box.acceleration = std::min(box.acceleration, b.left(b.limit.acceleration, b.bend * V * V));
+        if (b.bend == 0) continue;
+        const double by_twist = b.twist * V * V * V;
+        const double all = std::max(by_twist, for_bend * b.limit.jerk);
+        const double by_bend = 0.5 * (all + std::sqrt((all - by_twist) * (all + by_twist)));
+        box.acceleration = std::min(box.acceleration, by_bend / (3 * b.bend * V));
+    }
+    for (const Bounded& b : bounds) {
+        if (b.tangent == 0) continue;
+        const double by_bend = 3 * b.bend * V * box.acceleration, by_twist = b.twist * V * V * V;
+        box.jerk = std::min(box.jerk, b.left(b.limit.jerk, jerk_along_bend(by_bend, by_twist)));
+    }
+    return box;
 }
 
 AllBounded bounds_of_spline(const PathCurve& spline, const PathLimits& limits) {
@@ -60,8 +117,8 @@ AllBounded bounds_of_spline(const PathCurve& spline, const PathLimits& limits) {
     return out;
 }
 
-/// The box of README.md, "Corners", with this part of the greatest velocity.
-PathLimit box_within(const AllBounded& bounds, double part, const PathLimit& most) {
+/// The box of README.md, "Splines and transitions", with this part of the greatest velocity.
+PathLimit box_of_spline(const AllBounded& bounds, double part, const PathLimit& most) {
     PathLimit box = most;
     for (const Bounded& b : bounds) {
         if (b.tangent == 0) continue;
@@ -71,7 +128,8 @@ PathLimit box_within(const AllBounded& bounds, double part, const PathLimit& mos
                 box.velocity, part * std::sqrt(of_acceleration * b.limit.acceleration / b.bend));
         if (b.twist > 0)
             box.velocity = std::min(
-                box.velocity, part * Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist));
+                box.velocity,
+                part * Sleef_cinz_cbrtd1_u10purec(of_jerk_in_spline * b.limit.jerk / b.twist));
     }
     const double V = box.velocity;
     for (const Bounded& b : bounds) {
@@ -126,14 +184,14 @@ bool is_good(const PathLimit& limit) {
 
 PathLimit box_of_corner(const PathCurve& before, const PathCurve& after, double length,
                         const PathLimits& limits) {
-    return box_within(bounds_of_corner(before, after, length, limits), 1, limits.path);
+    return corner_box(bounds_of_corner(before, after, length, limits), limits.path);
 }
 
 PathLimit box_of(const PathCurve& curve, const PathLimits& limits) {
     if (curve.kind == PathCurveKind::spline) {
         const AllBounded bounds = bounds_of_spline(curve, limits);
         return soonest(curve.length,
-                       [&](double part) { return box_within(bounds, part, limits.path); });
+                       [&](double part) { return box_of_spline(bounds, part, limits.path); });
     }
     const PathLimit axes = tangential(curve, limits);
     const PathLimit most = least_of(limits.path, axes);

@@ -92,7 +92,12 @@ class CornerWay {
 
     /// Over 0..t.
     double until(double t) const {
-        return integral_until(t, [this](double at) { return pace(at); });
+        const double start = product(u_, u_), across = product(u_, turn_);
+        const double square = product(turn_, turn_);
+        return integral_until(t, [&](double at) {
+            const double h = at * at * (3 - 2 * at), pace = start + h * (2 * across + h * square);
+            return pace > 0 ? std::sqrt(pace) : 0;
+        });
     }
 
   private:

@@ -35,7 +35,7 @@ struct PathLeg {
 };
 
 /// Where courses were looked for in vain: over fewer legs one is looked for the next time, and
-/// none before a place.
+/// none for a leg that ends before a place, or that is under way before it.
 struct PathVain {
     double until = 0;  ///< along the path [u]
     std::uint64_t legs = PathCourse::most_phases;

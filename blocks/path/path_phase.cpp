@@ -50,12 +50,14 @@ MotionState PathPhase::after(double t) const {
     return {start.position + way, velocity, a + slope * way, slope * velocity};
 }
 
-double time_at_way(const MotionState& from, double duration, double way) {
+double time_at_way(const MotionState& start, double duration, double way) {
+    MotionState from = start;
+    from.position = 0;
     double lo = 0, hi = duration;
     double t = from.velocity > 0 ? std::min(way / from.velocity, duration) : 0.5 * duration;
     for (int step = 0; step < 64 && hi > lo; ++step) {
         const MotionState s = from.after(t);
-        const double missing = way - (s.position - from.position);
+        const double missing = way - s.position;
         (missing > 0 ? lo : hi) = t;
         double next = s.velocity > 0 ? t + missing / s.velocity : lo - 1;
         if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "blocks/profile/seven_segment.hpp"
 
@@ -14,11 +15,18 @@ struct BackwardRamp {
     SevenSegmentPlan plan;
     double entry = 0;  ///< at its start [u/s]
 
-    double velocity_before_end(double way) const {
-        std::size_t i = 6;
-        while (i > 0 && !(plan.T[i] > 0 && plan.start[i].position <= way)) --i;
-        const MotionState& s = plan.start[i];
-        return s.after(time_at_way(s, plan.T[i], way - s.position)).velocity;
+    /// How far before its end it has a velocity, which grows with the way; infinite where it is
+    /// nowhere as fast [u].
+    double way_before_end(double velocity) const {
+        std::size_t i = 0;
+        while (i < 2 && !(plan.start[i + 1].velocity > velocity)) ++i;
+        const MotionState &from = plan.start[i], &to = plan.start[i + 1];
+        if (velocity >= to.velocity) return std::numeric_limits<double>::infinity();
+        const double risen = velocity - from.velocity, rises = to.velocity - velocity;
+        if (!(risen > 0)) return from.position;
+        if (i == 0) return from.after(std::sqrt(2 * risen / from.jerk)).position;
+        if (i == 1) return from.after(risen / from.acceleration).position;
+        return from.after(plan.T[2] - std::sqrt(2 * rises / -from.jerk)).position;
     }
 
     /// From here on, counted from its end, it comes down as any ramp from a greater velocity.
@@ -40,7 +48,7 @@ bool passes_joints(PathStretches stretches, std::uint64_t k, const BackwardRamp&
     const double end = stretches[k + 1].ramp_end;
     for (std::uint64_t i = k; i < target; ++i) {
         const PathStretch& s = stretches[i];
-        if (!(ramp.velocity_before_end(end - s.end) <= s.joint)) return false;
+        if (s.joint < ramp.entry && !(end - s.end <= ramp.way_before_end(s.joint))) return false;
         if (s.end >= stretches[k + 1].settled) break;
     }
     return true;
@@ -56,6 +64,12 @@ void take(PathStretch& s, const BackwardRamp& ramp, std::uint64_t target, const 
     s.settled = end - ramp.settled_way();
 }
 
+/// No ramp to its own end begins faster: it takes no longer than at the velocity there.
+double greatest_entry(const PathStretch& s, double exit) {
+    const double V = s.box.velocity, lasts = (s.end - s.begin) / exit;
+    return exit > 0 ? std::min(V, exit + 0.5 * s.box.jerk * lasts * lasts) : V;
+}
+
 /// The better one of a ramp to its own end and one to where the next stretch brakes.
 void find_entry(PathStretches stretches, std::uint64_t k) {
     PathStretch& s = stretches[k];
@@ -66,13 +80,17 @@ void find_entry(PathStretches stretches, std::uint64_t k) {
     s.span = s.box;
     s.settled = s.ramp_end = s.end;
     s.ramp_exit = 0;
-    if (plan_back(exit, V, s.box, s.end - s.begin, ramp)) take(s, ramp, k, s.box, s.end, exit);
-    if (s.entry == V || stretches.is_last(k) || stretches.is_bound_by_joint(k)) return;
-    const PathStretch& next = stretches[k + 1];
-    const PathLimit span = least_of(s.box, next.span);
-    if (next.ramp_exit <= V && plan_back(next.ramp_exit, V, span, next.ramp_end - s.begin, ramp) &&
-        ramp.entry > s.entry && passes_joints(stretches, k, ramp))
-        take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
+    if (!stretches.is_last(k) && !stretches.is_bound_by_joint(k)) {
+        const PathStretch& next = stretches[k + 1];
+        const PathLimit span = least_of(s.box, next.span);
+        if (next.ramp_exit <= V &&
+            plan_back(next.ramp_exit, V, span, next.ramp_end - s.begin, ramp) &&
+            passes_joints(stretches, k, ramp))
+            take(s, ramp, next.target, span, next.ramp_end, next.ramp_exit);
+    }
+    if (s.entry <= greatest_entry(s, exit) && plan_back(exit, V, s.box, s.end - s.begin, ramp) &&
+        ramp.entry >= s.entry)
+        take(s, ramp, k, s.box, s.end, exit);
 }
 
 /// The velocity that the leg under way, and the ramps behind it, come to a stretch with; 0 where

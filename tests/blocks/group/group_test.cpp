@@ -124,7 +124,7 @@ TEST_CASE("group: corners are passed in motion within their deviation, or are a 
                 slowest = std::min(slowest, bench.number("group.velocity"));
         }
         // It is seen in whole milliseconds only, so not exactly where it is nearest.
-        CHECK(nearest <= (rounds ? 0.5001 : 1e-3));
+        CHECK(nearest <= (rounds ? 0.502 : 1e-3));
         CHECK(nearest >= (rounds ? 0.5 : 0));
         CHECK((slowest > 5) == rounds);
         CHECK(bench.number("y.position") == 40);

@@ -7,6 +7,8 @@
 #include <catch2/catch.hpp>
 
 #include "blocks/path/path.hpp"
+#include "blocks/path/path_ahead.hpp"
+#include "tests/blocks/path/path_random.hpp"
 
 using namespace lineshaft;
 
@@ -36,7 +38,110 @@ struct Contour {
     }
 };
 
+/// Random lines with corners, and what is planned of them before the motion begins. Times are
+/// `slower` times as long.
+struct Outset {
+    std::vector<PathPiece> ring = std::vector<PathPiece>(64);
+    Path path;
+    PathOutlook outlook;
+    PathLeg leg;
+
+    Outset(std::uint64_t seed, double size, double slower) {
+        test::Random random(seed);
+        const auto limit = [&](double v, double a, double j) {
+            return PathLimit{v / slower, a / (slower * slower), j / (slower * slower * slower)};
+        };
+        PathLimits limits{limit(random.decades(1, 3), random.decades(2, 4), random.decades(3, 6)),
+                          {}};
+        for (PathLimit& axis : limits.axes)
+            axis = limit(200, random.decades(2, 4), random.decades(3, 6));
+        PathVector from{};
+        for (int k = 0; k < 24; ++k) {
+            PathVector to = from;
+            for (std::size_t i = 0; i < 2; ++i) to[i] += size * random.between(-1, 1);
+            PathCurve line;
+            REQUIRE(line_to(from, to, line) == PathFault::none);
+            const double corner = size * random.between(0.02, 0.3);
+            REQUIRE(path.append(ring, line, limits, {0, corner}) == PathFault::none);
+            from = to;
+        }
+        look_back({ring, 0, path.stretches}, 0, {});
+        outlook = {{ring, 0, path.stretches}, {ring, 0, path.count}, 1, no_path_limit};
+        REQUIRE(plan_leg(outlook.stretches, {}, 0, 1, no_path_limit, leg));
+    }
+
+    /// What legs in boxes take to a place at which one of them ends [s].
+    double in_boxes_until(double place) const {
+        PathLeg next;
+        REQUIRE(plan_leg(outlook.stretches, {}, 0, 1, no_path_limit, next));
+        double taken = next.duration();
+        while (next.end < place) {
+            const ConstPathStretches rest{ring, next.goal + 1, path.stretches};
+            REQUIRE(
+                plan_leg(rest, {0, next.end_velocity(), 0, 0}, next.end, 1, no_path_limit, next));
+            taken += next.duration();
+        }
+        CHECK(next.end == place);
+        return taken;
+    }
+};
+
 }  // namespace
+
+TEST_CASE("path_ahead: what is looked for in vain is looked for over fewer legs and further on") {
+    int found = 0, over_fewer = 0, in_vain = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Outset outset(seed, 20, 1);
+        const PathLeg before = outset.leg;
+        PathVain vain;
+        INFO("seed " << seed);
+        if (look_ahead(outset.outlook, 0, outset.leg, vain)) {
+            ++found;
+            CHECK(outset.leg.duration() <= 0.998 * outset.in_boxes_until(outset.leg.end));
+            CHECK(vain.until == 0);
+            CHECK(vain.legs >= 2);
+            PathVain few;
+            few.legs = 2;
+            PathLeg leg = before;
+            if (!look_ahead(outset.outlook, 0, leg, few)) continue;
+            CHECK(leg.end <= outset.leg.end);
+            CHECK(few.legs <= 4);
+            if (leg.end < outset.leg.end) ++over_fewer;
+        } else {
+            ++in_vain;
+            CHECK(outset.leg.end == before.end);
+            CHECK(outset.leg.course.count == 0);
+            CHECK(vain.until > 0);
+            CHECK(vain.legs < PathCourse::most_phases);
+        }
+        vain.until = before.end;
+        PathLeg leg = before;
+        CHECK_FALSE(look_ahead(outset.outlook, 0, leg, vain));
+    }
+    CHECK(found > 20);
+    CHECK(over_fewer > 20);
+    CHECK(in_vain > 3);
+}
+
+TEST_CASE("path_ahead: a leg that leads beyond what was looked at in vain is looked at") {
+    Outset outset(0, 20, 1);
+    PathVain vain;
+    vain.until = 0.99 * outset.leg.end;
+    CHECK(look_ahead(outset.outlook, 0, outset.leg, vain));
+}
+
+TEST_CASE("path_ahead: no course is looked for where a piece takes a few milliseconds") {
+    for (const double slower : {0.02, 1.0}) {
+        Outset outset(1, 20, slower);
+        const bool is_slow = slower == 1;
+        const double in_boxes = outset.leg.end;
+        PathVain vain;
+        CHECK(look_ahead(outset.outlook, 0, outset.leg, vain) == is_slow);
+        CHECK((outset.leg.course.count > 0) == is_slow);
+        CHECK((outset.leg.end > in_boxes) == is_slow);
+        CHECK((vain.until > in_boxes) == !is_slow);
+    }
+}
 
 TEST_CASE("path_ahead: corners are passed by one course, sooner than in boxes") {
     Contour contour;
