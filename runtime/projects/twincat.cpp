@@ -36,6 +36,34 @@ Word declared_kind(const XmlFile& file, pugi::xml_node declaration) {
     return Word::end_of_file;
 }
 
+/// The variables of a declaration, and their types as they are written; in one line each.
+void know_declared(MadeVariables& variables, const XmlFile& file, pugi::xml_node declaration) {
+    Diagnostics unread;
+    const auto text =
+        std::make_shared<const SourceFile>(SourceFile{"", file.plain(declaration) + "\n"});
+    const auto tokens = st::read_tokens(text, unread).tokens;
+    std::vector<std::string_view> names;
+    for (auto it = tokens.begin(); it + 1 < tokens.end(); ++it) {
+        const Word next = (it + 1)->word;
+        if (st::is_name(it->word) && (next == Word::colon || next == Word::comma)) {
+            names.push_back(it->text);
+            continue;
+        }
+        if (it->word == Word::comma) continue;
+        const auto end = std::find_if(it + 1, tokens.end(), [&](const st::Token& token) {
+            return token.word == Word::assign || token.word == Word::semicolon ||
+                   token.first_in_line;
+        });
+        const bool is_type = it->word == Word::colon && end != tokens.end() && !end->first_in_line;
+        const std::size_t begin = (it + 1)->place.begin;
+        for (const std::string_view name : names)
+            if (is_type)
+                variables.know(
+                    name, std::string_view(text->text).substr(begin, end->place.begin - begin));
+        names.clear();
+    }
+}
+
 /// Writes one object's text.
 class ObjectText {
   public:
@@ -132,6 +160,7 @@ class ObjectText {
     template <class Add>
     void add_with_variables(pugi::xml_node owner, bool is_kept, Add add) {
         MadeVariables variables;
+        know_declared(variables, file_, owner.child("Declaration"));
         const auto outer = std::exchange(variables_, &variables);
         const bool was_kept = std::exchange(is_kept_, is_kept);
         const Excerpts before = std::exchange(text_, {});

@@ -52,6 +52,18 @@ bool is_operator(std::string_view type) {
     });
 }
 
+bool calls_member(std::string_view call, std::string_view instance) {
+    return !instance.empty() && (st::same_name(call, "method") || st::same_name(call, "action"));
+}
+
+std::string_view member_of_type(std::string_view type) {
+    return type.substr(type.rfind('.') + 1);
+}
+
+bool names_result(std::string_view output, std::string_view type) {
+    return output.empty() || st::same_name(output, member_of_type(type));
+}
+
 Excerpts arguments_of(const BoxCall& box,
                       const std::vector<std::pair<std::string, Excerpts>>& outputs) {
     Excerpts made;

@@ -23,6 +23,13 @@ bool is_type_name(std::string_view type);
 /// Its result is an expression of what leads to it, and it has no names of inputs.
 bool is_operator(std::string_view type);
 
+/// Whether a box of an instance calls a METHOD or an ACTION of it, which stands behind the last '.'
+/// of the box' type (`Motor.Stop`).
+bool calls_member(std::string_view call, std::string_view instance);
+std::string_view member_of_type(std::string_view type);
+/// Whether an output of a METHOD's box is the result, which has the METHOD's name, or none.
+bool names_result(std::string_view output, std::string_view type);
+
 /// `(IN := a, PT := b)`; of a function without names `(a, b)`; `outputs` stand behind that.
 Excerpts arguments_of(const BoxCall& box,
                       const std::vector<std::pair<std::string, Excerpts>>& outputs = {});

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/archive.hpp"
-#include "runtime/projects/drawings/box_calls.hpp"
+#include "runtime/projects/drawings/tree_boxes.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/st/syntax/token.hpp"
 
@@ -36,26 +36,6 @@ class BoxTrees {
     }
 
   private:
-    /// A box with what leads to it.
-    struct Box : BoxCall {
-        pugi::xml_node node;
-        std::string instance;
-        std::vector<pugi::xml_node> takers;  ///< operands at the outputs; null: none
-        std::vector<std::string> outputs, output_types;
-        bool has_enable = false, has_eno = false;
-        Value enabled = {};  ///< empty: always
-
-        std::size_t result() const { return has_eno ? 1 : 0; }
-        /// The output that what is behind the box takes.
-        std::size_t main() const {
-            const auto it = std::ranges::find_if(takers, Archive::is_null);
-            return it == takers.end() ? 0 : static_cast<std::size_t>(it - takers.begin());
-        }
-        std::string output_type(std::size_t i) const {
-            return i < output_types.size() && is_type_name(output_types[i]) ? output_types[i] : "";
-        }
-    };
-
     /// A label may also be a heading; one that is jumped to is one.
     std::vector<std::string> labels() const {
         std::vector<std::string> all;
@@ -306,18 +286,8 @@ class BoxTrees {
     }
 
     /// What a box is given is evaluated here.
-    Box read_box(pugi::xml_node node) {
-        Box box;
-        box.type = function_of(archive_.text(node, "BoxType"));
-        box.names = archive_.strings(Archive::member(node, "InputParam"), "Names");
-        box.node = node;
-        box.instance = archive_.text(Archive::member(node, "Instance"), "Operand");
-        box.takers =
-            Archive::items(Archive::member(Archive::member(node, "OutputItems"), "OutputItems"));
-        box.outputs = archive_.strings(Archive::member(node, "OutputParam"), "Names");
-        box.output_types = archive_.strings(Archive::member(node, "OutputParam"), "Types");
-        box.has_enable = archive_.is_true(node, "EN");
-        box.has_eno = archive_.is_true(node, "ENO");
+    TreeBox read_box(pugi::xml_node node) {
+        TreeBox box = read_tree_box(archive_, node);
         box.place = place_of(node, "box " + box.type);
         const auto marks = Archive::items(Archive::member(node, "InputFlags"));
         const auto inputs = Archive::items(Archive::member(node, "InputItems"));
@@ -336,25 +306,22 @@ class BoxTrees {
         return box;
     }
 
-    Value enabled_of(const Box& box) const {
+    Value enabled_of(const TreeBox& box) const {
         return box.enabled.is_empty() ? always(box.place) : box.enabled;
     }
 
     /// Statements of a box, and what it gives to what is behind it.
     Value value_of_box(pugi::xml_node node, bool is_taken) {
         Value left = takes_power(node) ? Value{} : std::exchange(left_, {});
-        Box box = read_box(node);
+        TreeBox box = read_box(node);
         left_ = std::move(left);
-        const std::string call = archive_.text(node, "CallType");
         if (archive_.is_true(node, "ProvidesSTSnippet")) return execute(box);
-        const bool is_block = !box.instance.empty() || call == "FunctionBlock" ||
-                              call == "Program" || call == "Action";
-        const Value value = is_block ? call_block(box) : call_function(box, is_taken);
+        const Value value = box.is_block() ? call_block(box) : call_function(box, is_taken);
         return marked(value, plain_marks(archive_.marks_of(node)), box.place);
     }
 
     /// A box with Structured Text in it.
-    Value execute(const Box& box) {
+    Value execute(const TreeBox& box) {
         const pugi::xml_node snippet =
             Archive::member(Archive::member(box.node, "STSnippet"), "STSnippet");
         const pugi::xml_node text =
@@ -372,20 +339,27 @@ class BoxTrees {
         return enabled_of(box);
     }
 
-    Value call_block(const Box& box) {
-        const std::string callee = box.instance.empty() ? box.type : box.instance;
-        const Value called = box.instance.empty() ? words(callee, box.place)
-                                                  : written(Archive::member(box.node, "Instance"));
+    /// `instance`, `instance.Method`, or what stands at the box.
+    Value called(const TreeBox& box) {
+        if (box.instance.empty()) return words(box.type, box.place);
+        Value made = written(Archive::member(box.node, "Instance"));
+        if (box.is_of_instance()) made.text.write(fmt::format(".{}", box.member()), box.place);
+        return made;
+    }
+
+    Value call_block(const TreeBox& box) {
+        const Value block = box.instance.empty() ? words(box.type, box.place)
+                                                 : written(Archive::member(box.node, "Instance"));
         const auto output = [&](std::size_t i) {
             if (box.has_eno && i == 0) return enabled_of(box);
             Value made{.text = {}, .type = box.output_type(i)};
-            made.text.append(called.text);
+            made.text.append(block.text);
             made.text.write(fmt::format(".{}", i < box.outputs.size() ? box.outputs[i] : "?"),
                             box.place);
             return made;
         };
         write_if(now_, box.enabled, box.place);
-        now_.append(called.text);
+        now_.append(called(box).text);
         now_.append(arguments_of(box));
         now_.write(";\n", box.place);
         for (std::size_t i = box.result(); i < box.takers.size(); ++i) give(box, i, output(i));
@@ -395,13 +369,14 @@ class BoxTrees {
     }
 
     /// `???` at an output is a pin without a variable, as is an empty one.
-    bool is_taken_at(const Box& box, std::size_t output) const {
-        return output < box.takers.size() && !Archive::is_null(box.takers[output]) &&
-               archive_.text(box.takers[output], "Operand") != "???";
+    bool is_taken_at(const TreeBox& box, std::size_t output) const {
+        if (output >= box.takers.size() || Archive::is_null(box.takers[output])) return false;
+        const std::string text = archive_.text(box.takers[output], "Operand");
+        return text.empty() ? archive_.marks_of(box.takers[output]).is_return : text != "???";
     }
 
     /// To what is connected to an output.
-    void give(const Box& box, std::size_t output, const Value& value) {
+    void give(const TreeBox& box, std::size_t output, const Value& value) {
         if (!is_taken_at(box, output)) return;
         const Marks marks = archive_.marks_of(box.takers[output]);
         if (marks.is_jump || marks.is_return)
@@ -410,20 +385,39 @@ class BoxTrees {
         assign(box.takers[output], value);
     }
 
-    /// What a function gives beside its result, to operands.
-    std::vector<std::pair<std::string, Excerpts>> outputs_of(const Box& box) {
+    /// A variable for what is behind the box, where that takes an output beside the result. Empty:
+    /// it does not.
+    Value wire_behind(const TreeBox& box) {
+        const std::size_t main = box.main();
+        const bool is_one = main >= box.first_other() && main < box.outputs.size() &&
+                            main < box.takers.size() && Archive::is_null(box.takers[main]);
+        const std::string type = box.output_type(main);
+        if (!is_one) return {};
+        if (!type.empty()) return words(variables_.make("_wire", type), box.place, type);
+        refuse(box.place, "the type of what comes out of this box is not known",
+               "assign it to a variable, and take that");
+        return words("FALSE", box.place);
+    }
+
+    /// What a function gives beside its result, to operands and to what is `behind`.
+    std::vector<std::pair<std::string, Excerpts>> outputs_of(const TreeBox& box,
+                                                             const Value& behind) {
         std::vector<std::pair<std::string, Excerpts>> made;
-        for (std::size_t i = box.result() + 1; i < box.takers.size(); ++i)
-            if (is_taken_at(box, i) && i < box.outputs.size())
+        for (std::size_t i = box.first_other(); i < box.outputs.size(); ++i) {
+            if (is_taken_at(box, i))
                 made.emplace_back(box.outputs[i], written(box.takers[i]).text);
+            else if (i == box.main() && !behind.is_empty())
+                made.emplace_back(box.outputs[i], behind.text);
+        }
         return made;
     }
 
-    Value call_function(const Box& box, bool is_taken) {
+    Value call_function(const TreeBox& box, bool is_taken) {
         const std::size_t result = box.result();
-        const bool is_assigned = is_taken_at(box, result);
-        const bool is_result_taken = is_taken && box.main() == result;
-        Value value = result_of(box);
+        const bool is_assigned = box.has_result() && is_taken_at(box, result);
+        const bool is_result_taken = box.has_result() && is_taken && box.main() == result;
+        const Value behind = is_taken ? wire_behind(box) : Value{};
+        Value value = result_of(box, behind);
         if (is_assigned) {
             write_if(now_, box.enabled, box.place);
             give(box, result, value);
@@ -436,12 +430,12 @@ class BoxTrees {
             write_end_if(now_, box.enabled, box.place);
         }
         if (box.has_eno) give(box, 0, enabled_of(box));
-        if (!is_result_taken) return enabled_of(box);
-        return is_assigned ? value : if_enabled(box, value);
+        if (is_result_taken) return is_assigned ? value : if_enabled(box, value);
+        return behind.is_empty() ? enabled_of(box) : behind;
     }
 
     /// While a box is not enabled its result is FALSE, or stays as it is.
-    Value if_enabled(const Box& box, const Value& value) {
+    Value if_enabled(const TreeBox& box, const Value& value) {
         if (box.enabled.is_empty() || box.enabled.is_always) return value;
         if (value.type == "BOOL") return both(box.enabled, value, box.place);
         if (!is_type_name(value.type)) {
@@ -456,7 +450,7 @@ class BoxTrees {
         return kept;
     }
 
-    Value result_of(const Box& box) {
+    Value result_of(const TreeBox& box, const Value& behind) {
         if (is_operator(box.type)) {
             Value made = result_of_operator(box);
             if (!made.is_empty()) return made;
@@ -464,10 +458,9 @@ class BoxTrees {
             return words("FALSE", box.place, "BOOL");
         }
         Value made;
-        if (archive_.text(box.node, "CallType") == "Function")
-            made.type = box.output_type(box.result());
-        made.text.write(box.type, box.place);
-        made.text.append(arguments_of(box, outputs_of(box)));
+        if (box.call == "Function" || box.is_method()) made.type = box.output_type(box.result());
+        made.text.append(called(box).text);
+        made.text.append(arguments_of(box, outputs_of(box, behind)));
         return made;
     }
 

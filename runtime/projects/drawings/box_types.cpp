@@ -1,5 +1,6 @@
 #include <set>
 
+#include "runtime/projects/drawings/box_calls.hpp"
 #include "runtime/projects/drawings/networks.hpp"
 #include "runtime/st/syntax/token.hpp"
 
@@ -14,6 +15,43 @@ bool is_known(const std::string& type) {
 }
 
 }  // namespace
+
+/// What CODESYS says that a box calls: `operator`, `function`, `functionblock`, `execute`, ...
+std::string NetworkText::call_type(const Element& box) const {
+    for (const pugi::xml_node data : box.node.child("addData").children("data"))
+        if (const pugi::xml_node type = data.child("CallType")) return file_.plain(type);
+    return {};
+}
+
+/// A METHOD or an ACTION of the instance beside the box (`instanceName`).
+bool NetworkText::is_of_instance(const Element& box) const {
+    return calls_member(call_type(box), attribute(box, "instanceName"));
+}
+
+/// Its outputs are those of an instance.
+bool NetworkText::is_block(const Element& box) const {
+    return !attribute(box, "instanceName").empty() && !st::same_name(call_type(box), "method");
+}
+
+/// The first output beside ENO is the result, unless a METHOD of the instance has none.
+bool NetworkText::gives_result(const Element& box, const Pin& output) const {
+    return is_block(box) || !is_of_instance(box) || names_result(output.name, type_name_of(box));
+}
+
+/// `instance`, `instance.Method`, or a function's name.
+Value NetworkText::called(const Element& box) {
+    Value made;
+    if (!attribute(box, "instanceName").empty()) {
+        made = instance_of(box);
+        if (is_of_instance(box))
+            made.text.write(fmt::format(".{}", member_of_type(attribute(box, "typeName"))),
+                            place_of(box));
+        return made;
+    }
+    made.text.draw(std::make_shared<const std::string>(name_of(box)));
+    file_.copy(made.text, box.node.attribute("typeName"));
+    return made;
+}
 
 std::vector<std::string> NetworkText::types_of_arguments(std::size_t i,
                                                          std::set<std::size_t>& seen) const {
@@ -41,9 +79,8 @@ std::string NetworkText::type_of(const Line& line, std::set<std::size_t>& seen) 
     if (from.kind != Drawn::block)
         return context_.types.of_expression(file_.plain(from.node.child("expression")));
     if (st::same_name(line.pin, "ENO")) return "BOOL";
-    const std::string instance = attribute(from, "instanceName");
-    return instance.empty() ? type_of_result(line.from, seen)
-                            : context_.types.of_output(instance, line.pin);
+    return is_block(from) ? context_.types.of_output(attribute(from, "instanceName"), line.pin)
+                          : type_of_result(line.from, seen);
 }
 
 /// The type of the variables that a result goes to, else of what it is reckoned with.
@@ -66,7 +103,7 @@ std::string NetworkText::type_of_taker(std::size_t i, std::size_t by,
     if (to.kind == Drawn::out_variable)
         return context_.types.of_expression(file_.plain(to.node.child("expression")));
     if (to.kind == Drawn::coil || to.kind == Drawn::contact) return "BOOL";
-    if (to.kind != Drawn::block || !attribute(to, "instanceName").empty()) return {};
+    if (to.kind != Drawn::block || is_block(to)) return {};
     if (!is_operator(to) && !context_.types.is_of_one_type(type_name_of(to))) return {};
     if (seen.size() > most_typed || !seen.insert(by).second) return {};
     std::set<std::size_t> without{i};

@@ -42,13 +42,6 @@ std::string NetworkText::type_name_of(const Element& box) const {
     return function_of(attribute(box, "typeName"));
 }
 
-/// What CODESYS says that a box calls: `operator`, `function`, `functionblock`, `execute`, ...
-std::string NetworkText::call_type(const Element& box) const {
-    for (const pugi::xml_node data : box.node.child("addData").children("data"))
-        if (const pugi::xml_node type = data.child("CallType")) return file_.plain(type);
-    return {};
-}
-
 bool NetworkText::is_operator(const Element& box) const {
     const std::string name = lower(type_name_of(box));
     return std::ranges::find(operators, name, &Operator::name) != std::end(operators) ||
@@ -65,7 +58,7 @@ bool NetworkText::is_used(const State& state, const Pin& pin) const {
 const Pin* NetworkText::result_of(const Element& box) const {
     const auto result =
         std::ranges::find_if(box.outputs, [](const Pin& pin) { return !is_eno(pin); });
-    return result == box.outputs.end() ? nullptr : &*result;
+    return result != box.outputs.end() && gives_result(box, *result) ? &*result : nullptr;
 }
 
 const Pin* NetworkText::find_output(const Element& box, std::string_view name) const {
@@ -78,7 +71,7 @@ const Pin* NetworkText::find_output(const Element& box, std::string_view name) c
 /// last scan was taken.
 bool NetworkText::waits_for_use(std::size_t i) const {
     const Element& box = drawing_.elements[i];
-    const bool is_function = attribute(box, "instanceName").empty() && call_type(box) != "execute";
+    const bool is_function = !is_block(box) && call_type(box) != "execute";
     const State& state = states_[i];
     const bool is_late = !state.loop.empty() || !state.enabled.is_empty();
     return is_function && box.order <= 0 && !state.uses.empty() && !is_late;
@@ -93,7 +86,7 @@ void NetworkText::evaluate_box(std::size_t i) {
     if (context_.is_of_matiec) turn_ = box.order;
     if (call_type(box) == "execute")
         execute(box, state);
-    else if (!attribute(box, "instanceName").empty())
+    else if (is_block(box))
         call_block(box, state);
     else
         call_function(i);
@@ -117,7 +110,7 @@ std::string NetworkText::variable_of_eno(const Element& box, State& state) {
 void NetworkText::call_block(const Element& box, State& state) {
     const Mark place = place_of(box);
     const std::string eno = variable_of_eno(box, state);
-    Excerpts call = instance_of(box).text;
+    Excerpts call = called(box).text;
     std::string_view before = "(";
     const auto add = [&](const Pin& pin, std::string_view sign, const Excerpts& value) {
         call.write(fmt::format("{}{}{}", before, pin.name, sign), place);
@@ -213,8 +206,7 @@ Value NetworkText::call_of(std::size_t i) {
         return made;
     }
     made.type = std::move(type);
-    made.text.draw(std::make_shared<const std::string>(name_of(box)));
-    file_.copy(made.text, box.node.attribute("typeName"));
+    made.text.append(called(box).text);
     std::string_view before = "(";
     const auto add = [&](const Pin& pin, std::string_view sign, const Value& value) {
         const bool has_name = !pin.name.empty() && (is_named || sign == " => ");
@@ -321,9 +313,10 @@ void NetworkText::call_function(std::size_t i) {
     }
     const bool is_variable = result && result->expression;
     const bool is_taken =
-        std::ranges::any_of(state.uses, [](const Use& use) { return use.pin != "eno"; });
+        result && std::ranges::any_of(state.uses, [](const Use& use) { return use.pin != "eno"; });
     if (!is_taken && !is_variable) {
-        const bool does_nothing = is_operator(box) || !value.type.empty();
+        const bool is_declared = context_.types.is_declared(type_name_of(box));
+        const bool does_nothing = is_operator(box) || (!value.type.empty() && !is_declared);
         if (!does_nothing) write_guarded(is_guarded ? enabled : Value{}, Value{}, value, place);
         return;
     }
@@ -433,7 +426,7 @@ Value NetworkText::eno_of_last_scan(std::size_t i) {
     State& state = states_[i];
     const auto en = std::ranges::find_if(box.inputs, is_en);
     if (en == box.inputs.end() || en->lines.empty()) return {};
-    if (!attribute(box, "instanceName").empty()) return member_of(box, "ENO");
+    if (is_block(box)) return member_of(box, "ENO");
     if (state.enabled.is_empty())
         state.enabled = words(context_.variables.make("_wire", "BOOL"), place_of(box), "BOOL");
     return state.enabled;
@@ -445,8 +438,7 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
     State& state = states_[i];
     const Mark place = place_of(box);
     const Pin* pin = name.empty() ? result_of(box) : find_output(box, name);
-    const bool is_block = !attribute(box, "instanceName").empty();
-    if (!pin && is_block && !name.empty()) {
+    if (!pin && is_block(box) && !name.empty()) {
         if (!state.is_active && !state.is_done && !comes_later(box)) evaluate_box(i);
         return member_of(box, name);
     }
@@ -461,7 +453,7 @@ Value NetworkText::value_of_box(std::size_t i, const std::string& name) {
         const bool is_late = waits || state.is_active;
         value = is_late ? eno_of_last_scan(i) : state.enabled;
         if (value.is_empty()) value = words("TRUE", place, "BOOL"), value.is_always = true;
-    } else if (is_block) {
+    } else if (is_block(box)) {
         value = member_of(box, pin->name);
     } else if (state.is_active || waits) {
         std::set<std::size_t> seen;

@@ -1,7 +1,6 @@
 #include "runtime/projects/drawings/function_charts.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -9,62 +8,13 @@
 #include <fmt/format.h>
 
 #include "runtime/projects/drawings/archive.hpp"
-#include "runtime/projects/drawings/box_calls.hpp"
+#include "runtime/projects/drawings/chart_items.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 
 namespace lineshaft::projects {
 
 namespace {
-
-enum class Item : std::uint8_t {
-    input,
-    output,
-    box,
-    composer,
-    selector,
-    jump,
-    label,
-    return_,
-    comment,
-    other
-};
-
-struct NamedItem {
-    std::string_view name;
-    Item kind;
-};
-constexpr NamedItem items_by_name[] = {
-    {"CFCInputElement", Item::input},       {"CFCOutputElement", Item::output},
-    {"CFCBoxElement", Item::box},           {"CFCComposerElement", Item::composer},
-    {"CFCSelectorElement", Item::selector}, {"CFCJumpElement", Item::jump},
-    {"CFCLabelElement", Item::label},       {"CFCReturnElement", Item::return_},
-    {"CFCCommentElement", Item::comment},
-};
-
-/// A pin of an element.
-struct PinPlace {
-    std::size_t item = 0, pin = 0;
-    bool is_input = false;  ///< from which what is VAR_IN_OUT goes on
-};
-
-struct ChartPin {
-    pugi::xml_node node;
-    std::string name = {};
-    bool is_negated = false;
-};
-
-struct ChartItem {
-    pugi::xml_node node;
-    Item kind = Item::other;
-    std::string text = {};      ///< what stands in it; of a box what is called
-    std::string instance = {};  ///< of a box
-    int x = 0, y = 0;
-    std::vector<ChartPin> inputs = {}, outputs = {};
-    std::size_t takers = 0;           ///< of what comes out
-    std::optional<Value> value = {};  ///< of a function, as soon as it is evaluated
-    std::string loop = {};            ///< the variable of what goes back
-};
 
 class FunctionChart {
   public:
@@ -108,10 +58,7 @@ class FunctionChart {
         ChartItem item{.node = node};
         if (known != std::end(items_by_name)) item.kind = known->kind;
         item.text = archive_.text(Archive::member(node, "Text"), "Text");
-        const std::string bounds = archive_.text(node, "Bounds");
-        const char* const end = bounds.data() + bounds.size();
-        const char* const behind_x = std::from_chars(bounds.data(), end, item.x).ptr;
-        if (end - behind_x > 2) std::from_chars(behind_x + 2, end, item.y);
+        item.stand_at(archive_.text(node, "Bounds"));
         add_pins(item);
         items_.push_back(std::move(item));
     }
@@ -145,6 +92,7 @@ class FunctionChart {
             for (ChartPin& pin : item.outputs) pin.name = take();
         item.text = function_of(take());
         item.instance = take();
+        item.call = archive_.text(item.node, "KindOfCall");
     }
 
     /// By the properties of the object, which stand behind its body.
@@ -153,9 +101,11 @@ class FunctionChart {
     }
 
     std::vector<std::size_t> in_order() const {
+        if (orders_itself())
+            return order_by_data_flow(items_, [&](const ChartPin& pin) { return source_of(pin); });
         std::vector<std::size_t> order(items_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        return orders_itself() ? by_data_flow(order) : order;
+        return order;
     }
 
     std::optional<PinPlace> source_of(const ChartPin& pin) const {
@@ -164,57 +114,6 @@ class FunctionChart {
         if (const auto it = outputs_.find(source->second); it != outputs_.end()) return it->second;
         const auto through = inputs_.find(source->second);  // of what is VAR_IN_OUT
         return through == inputs_.end() ? std::optional<PinPlace>() : through->second;
-    }
-
-    std::vector<std::size_t> by_data_flow(std::vector<std::size_t> all) const {
-        const std::vector<std::size_t> network = networks();
-        std::map<std::size_t, std::pair<int, int>> top;
-        for (const std::size_t i : all) {
-            const std::pair<int, int> at{items_[i].y, items_[i].x};
-            const auto it = top.emplace(network[i], at).first;
-            it->second = std::min(it->second, at);
-        }
-        std::ranges::stable_sort(all, {}, [&](std::size_t i) {
-            return std::make_tuple(top[network[i]], network[i], items_[i].y, items_[i].x);
-        });
-        std::vector<std::size_t> order;
-        std::vector<bool> is_seen(items_.size());
-        for (const std::size_t i : all) put_behind_sources(i, order, is_seen);
-        return order;
-    }
-
-    void put_behind_sources(std::size_t i, std::vector<std::size_t>& order,
-                            std::vector<bool>& is_seen) const {
-        std::vector<std::pair<std::size_t, std::size_t>> way{{i, 0}};
-        if (is_seen[i]) return;
-        is_seen[i] = true;
-        while (!way.empty()) {
-            auto& [item, pin] = way.back();
-            if (pin == items_[item].inputs.size()) {
-                order.push_back(item);
-                way.pop_back();
-                continue;
-            }
-            const auto source = source_of(items_[item].inputs[pin++]);
-            if (!source || is_seen[source->item]) continue;
-            is_seen[source->item] = true;
-            way.emplace_back(source->item, 0);
-        }
-    }
-
-    /// Elements that connections join have one number.
-    std::vector<std::size_t> networks() const {
-        std::vector<std::size_t> root(items_.size());
-        std::iota(root.begin(), root.end(), std::size_t{0});
-        const auto root_of = [&](std::size_t i) {
-            while (root[i] != i) i = root[i] = root[root[i]];
-            return i;
-        };
-        for (std::size_t i = 0; i < items_.size(); ++i)
-            for (const ChartPin& pin : items_[i].inputs)
-                if (const auto source = source_of(pin)) root[root_of(i)] = root_of(source->item);
-        for (std::size_t i = 0; i < items_.size(); ++i) root[i] = root_of(i);
-        return root;
     }
 
     Mark place_of(const ChartItem& item) const {
@@ -340,27 +239,26 @@ class FunctionChart {
         return made;
     }
 
-    bool has_instance(const ChartItem& item) const {
-        const std::string call = archive_.text(item.node, "KindOfCall");
-        return !item.instance.empty() || call == "FunctionBlock" || call == "Program" ||
-               call == "Action";
+    /// What the box is a call of, or has its outputs of.
+    static Value instance_of(const ChartItem& item, const Mark& place) {
+        return words(item.instance.empty() ? item.text : item.instance, place);
     }
     Value called(const ChartItem& item) const {
-        return words(item.instance.empty() ? item.text : item.instance, place_of(item));
+        Value made = instance_of(item, place_of(item));
+        if (item.is_of_instance())
+            made.text.write(fmt::format(".{}", member_of_type(item.text)), place_of(item));
+        return made;
     }
 
     /// A block's output; what a function gave when it was evaluated, or gives now.
     Value value_of_box(ChartItem& item, std::size_t pin) {
         const Mark place = place_of(item);
-        const bool has_eno = !item.outputs.empty() && st::same_name(item.outputs[0].name, "eno");
-        if (has_eno && pin == 0) return enabled_of(item);
-        if (has_instance(item)) return member_of(called(item), item, pin);
-        if (pin > (has_eno ? 1U : 0U))
-            refuse(item, "an output of a function beside its result is not supported in a chart",
-                   "call it in Structured Text");
+        if (item.has_eno() && pin == 0) return enabled_of(item);
+        if (item.is_block()) return member_of(instance_of(item, place), item, pin);
+        if (pin >= item.first_other()) return value_of_other(item, item.outputs[pin]);
         if (item.value) return *item.value;
-        if (!item.loop.empty()) return words(item.loop, place, type_of(item));
-        const std::string type = type_of(item);
+        const std::string type = type_in_loop(item);
+        if (!item.loop.empty()) return words(item.loop, place, type);
         if (type.empty() || !is_kept_) {
             refuse(item,
                    type.empty() ? "what comes out of this is taken before it is evaluated, and "
@@ -374,13 +272,64 @@ class FunctionChart {
         return words(item.loop, place, type);
     }
 
-    /// As far as its name tells.
-    static std::string type_of(const ChartItem& item) {
-        if (item.kind == Item::composer) return item.text;
-        if (compares(item.text)) return "BOOL";
-        const std::string name = lower(item.text);
-        const std::size_t to = name.starts_with("to_") ? 0 : name.find("_to_");
-        return to == name.npos ? std::string() : item.text.substr(to + (to == 0 ? 3 : 4));
+    /// What a METHOD gives beside its result is in a variable of the type of what takes it.
+    Value value_of_other(ChartItem& item, ChartPin& output) {
+        const Mark place = place_of(item);
+        const std::string type = type_of_takers(output);
+        if (item.is_of_instance() && is_kept_ && !type.empty()) {
+            if (output.wire.empty()) output.wire = variables_.make("_wire", type);
+            return words(output.wire, place, type);
+        }
+        refuse(item,
+               item.is_of_instance()
+                   ? fmt::format("the type of '{}' is not known here", output.name)
+                   : "an output of a function beside its result is not supported in a chart",
+               item.is_of_instance() ? "connect it to variables that the block declares"
+                                     : "call it in Structured Text");
+        return words("FALSE", place, "BOOL");
+    }
+
+    /// The type of the variables that an output leads to. Empty: something else takes it, or they
+    /// differ.
+    std::string type_of_takers(const ChartPin& output) const {
+        std::string type;
+        for (const auto& [to, from] : sources_) {
+            if (from != archive_.text(output.node, "Id")) continue;
+            const auto pin = inputs_.find(to);
+            const bool is_variable =
+                pin != inputs_.end() && items_[pin->second.item].kind == Item::output;
+            const std::string one =
+                is_variable ? declared_type(items_[pin->second.item]) : std::string();
+            if (one.empty() || (!type.empty() && !st::same_name(type, one))) return {};
+            type = one;
+        }
+        return type;
+    }
+
+    std::string declared_type(const ChartItem& variable) const {
+        return upper(variables_.known_type("#" + variable.text));
+    }
+
+    /// A METHOD's result has the type of what takes it.
+    std::string type_of(const ChartItem& item) const {
+        const std::size_t result = item.has_eno() ? 1 : 0;
+        const bool is_method = item.is_of_instance() && result < item.outputs.size();
+        return is_method ? type_of_takers(item.outputs[result]) : item.type();
+    }
+
+    /// What goes back has a type by what leads to it, too: bits are truths, unless a declaration
+    /// says that they are otherwise.
+    std::string type_in_loop(const ChartItem& item) const {
+        constexpr std::string_view of_bits[] = {"and", "or", "xor", "not"};
+        std::string type = type_of(item);
+        if (!type.empty() || std::ranges::find(of_bits, lower(item.text)) == std::end(of_bits))
+            return type;
+        for (const ChartPin& pin : item.inputs) {
+            const auto source = source_of(pin);
+            if (source && !source->is_input && type.empty())
+                type = declared_type(items_[source->item]);
+        }
+        return type.empty() ? "BOOL" : type;
     }
 
     Value enabled_of(const ChartItem& item) {
@@ -399,26 +348,55 @@ class FunctionChart {
         return call;
     }
 
+    std::vector<std::pair<std::string, Excerpts>> outputs_of(ChartItem& item) {
+        std::vector<std::pair<std::string, Excerpts>> made;
+        for (std::size_t i = item.first_other(); i < item.outputs.size() && !item.is_block(); ++i)
+            if (is_taken(item.outputs[i]))
+                made.emplace_back(item.outputs[i].name, value_of_other(item, item.outputs[i]).text);
+        return made;
+    }
+
+    bool is_taken(const ChartPin& output) const {
+        return std::ranges::any_of(sources_, [&](const auto& way) {
+            return way.second == archive_.text(output.node, "Id");
+        });
+    }
+
     void evaluate_box(ChartItem& item) {
         const BoxCall call = call_of(item);
         const Value enabled = enabled_of(item);
-        if (has_instance(item)) {
-            write_if(now_, enabled, call.place);
-            now_.append(called(item).text);
-            now_.append(arguments_of(call));
-            now_.write(";\n", call.place);
-            return write_end_if(now_, enabled, call.place);
-        }
-        Value made{.text = {}, .type = type_of(item)};
+        Value made{.text = {}, .type = item.type()};
         if (is_operator(item.text)) {
             made = result_of_operator(call);
             if (made.is_empty()) return refuse_open(item);
         } else {
-            made.text.write(item.text, call.place);
-            made.text.append(arguments_of(call));
+            made.text.append(called(item).text);
+            made.text.append(arguments_of(call, outputs_of(item)));
         }
-        if (made.type.empty()) made.type = type_of(item);
-        keep(item, std::move(made), enabled);
+        const std::size_t result = item.has_eno() ? 1 : 0;
+        const bool has_result = !item.is_block() && item.has_result();
+        if (has_result && result < item.outputs.size() && is_taken(item.outputs[result])) {
+            if (made.type.empty() || !item.loop.empty()) made.type = type_of(item, made);
+            return keep(item, std::move(made), enabled);
+        }
+        if (is_operator(item.text)) return;
+        write_if(now_, enabled, call.place);
+        now_.append(made.text);
+        now_.write(";\n", call.place);
+        write_end_if(now_, enabled, call.place);
+    }
+
+    /// Where it is needed for what is made of the value of the last scan, too.
+    std::string type_of(const ChartItem& item, const Value& made) const {
+        return item.loop.empty() && !takes_last_scan(made) ? type_of(item) : type_in_loop(item);
+    }
+
+    /// It has to be kept in its turn.
+    bool takes_last_scan(const Value& value) const {
+        return std::ranges::any_of(items_, [&](const ChartItem& item) {
+            const bool is_due = !item.loop.empty() && !item.value;
+            return is_due && value.text.text().find(item.loop) != std::string_view::npos;
+        });
     }
 
     void refuse_open(ChartItem& item) {
@@ -430,18 +408,13 @@ class FunctionChart {
     void keep(ChartItem& item, Value value, const Value& enabled) {
         const Mark place = place_of(item);
         const bool is_guarded = !enabled.is_empty() && !enabled.is_always;
-        const bool is_a_type = is_type_name(value.type);
-        if (item.takers == 0) {
-            if (is_operator(item.text)) return;
-            write_if(now_, enabled, place);
-            now_.append(value.text);
-            now_.write(";\n", place);
-            return write_end_if(now_, enabled, place);
-        }
+        const bool is_a_type =
+            is_type_name(value.type) || (item.is_of_instance() && !value.type.empty());
+        const bool is_late = item.is_of_instance() || !item.loop.empty() || takes_last_scan(value);
         if (!is_a_type && is_guarded)
             return refuse(item, "the type of what comes out of this box is not known",
                           "connect it to a variable, and take its value from there");
-        if (!is_a_type || (item.takers == 1 && !is_guarded && item.loop.empty())) {
+        if (!is_a_type || (item.takers == 1 && !is_guarded && !is_late)) {
             item.value = std::move(value);
             return;
         }

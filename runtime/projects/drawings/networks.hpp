@@ -128,6 +128,7 @@ class NetworkText {
     Value eno_of_last_scan(std::size_t i);
     Value value_of_box(std::size_t i, const std::string& name);
     Value instance_of(const Element& box);
+    Value called(const Element& box);
     Value member_of(const Element& box, const std::string& pin);
     const Pin* result_of(const Element& box) const;
     const Pin* find_output(const Element& box, std::string_view name) const;
@@ -139,6 +140,9 @@ class NetworkText {
     std::optional<std::size_t> only_target(std::size_t i) const;
     std::string type_name_of(const Element& box) const;
     std::string call_type(const Element& box) const;
+    bool is_block(const Element& box) const;
+    bool is_of_instance(const Element& box) const;
+    bool gives_result(const Element& box, const Pin& output) const;
     std::string type_of_result(std::size_t i, std::set<std::size_t>& seen) const;
     std::vector<std::string> types_of_arguments(std::size_t i, std::set<std::size_t>& seen) const;
     std::string type_of_takers(std::size_t i) const;

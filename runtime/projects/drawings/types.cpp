@@ -114,6 +114,15 @@ std::string type_name(const XmlFile& file, pugi::xml_node type) {
     return {};
 }
 
+/// In small letters: `motor`, of a METHOD `motor.stop`.
+static std::string name_of_unit(const XmlFile& file, pugi::xml_node unit) {
+    std::string name = lower(file.plain(unit.attribute("name")));
+    if (std::string_view(unit.name()) != "Method") return name;
+    pugi::xml_node owner = unit.parent();
+    while (owner && std::string_view(owner.name()) != "pou") owner = owner.parent();
+    return lower(file.plain(owner.attribute("name"))) + "." + name;
+}
+
 DeclaredTypes declared_types(const XmlFile& file) {
     DeclaredTypes made;
     const auto add = [&](VariableTypes& to, pugi::xml_node section) {
@@ -124,8 +133,8 @@ DeclaredTypes declared_types(const XmlFile& file) {
     for (pugi::xml_node node = file.root(); node;) {
         const std::string_view kind = node.name();
         if (kind == "globalVars") add(made.globals, node);
-        if (kind == "pou") {
-            const std::string name = lower(file.plain(node.attribute("name")));
+        if (kind == "pou" || kind == "Method") {
+            const std::string name = name_of_unit(file, node);
             const pugi::xml_node interface = node.child("interface");
             for (const pugi::xml_node section : interface.children()) add(made.pous[name], section);
             if (const pugi::xml_node result = interface.child("returnType")) {
@@ -213,7 +222,7 @@ static std::string of_row(const StandardFunction& f, const std::vector<std::stri
 }
 
 bool NetworkTypes::is_of_one_type(std::string_view function) const {
-    if (declared_.functions.contains(lower(function))) return false;
+    if (is_declared(function)) return false;
     const StandardFunction* f = st::find_standard_function(function);
     if (!f) return is_not(function);
     const bool are_alike =

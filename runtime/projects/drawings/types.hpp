@@ -16,7 +16,7 @@ using VariableTypes = std::map<std::string, std::string, std::less<>>;
 /// What a file of PLCopen XML declares, as far as the types of its values go.
 struct DeclaredTypes {
     VariableTypes globals;
-    VariableTypes functions;                    ///< their results
+    VariableTypes functions;                    ///< their results; of METHODs, too: `motor.stop`
     std::map<std::string, VariableTypes> pous;  ///< by their names in small letters
 };
 DeclaredTypes declared_types(const XmlFile& file);
@@ -35,6 +35,10 @@ class NetworkTypes {
     std::string of_declared(std::string_view pou, std::string_view variable) const;
     /// The type of a function's result, from those of its arguments.
     std::string of_call(std::string_view function, const std::vector<std::string>& arguments) const;
+    /// By the file: what it does beside its result is not known.
+    bool is_declared(std::string_view function) const {
+        return declared_.functions.contains(lower(function));
+    }
     /// Whether all arguments and the result are of one type: `ADD`, `MAX`, `LIMIT`.
     bool is_of_one_type(std::string_view function) const;
 

@@ -88,6 +88,10 @@ bool is_beyond_single(const Expression& e, const Type& other, const Type* expect
 /// Gives a number without type that of the other one, if it fits.
 bool make_concrete(Checking& c, Expression*& e, const Type& other);
 
+/// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
+/// what is expected, or a signed one. Null if there is none, or none is needed.
+const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected);
+
 /// Brings both operands to one type, that of the result or one that `expected` suggests; null if
 /// there is none, which was told, L0905 or L0906.
 const Type* unite(Checking& c, Expression& e, const Type* expected = nullptr);

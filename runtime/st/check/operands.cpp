@@ -63,8 +63,8 @@ bool mixes_signs_of_64(const Expression& e) {
            (a.is_unsigned_64() || b.is_unsigned_64());
 }
 
-/// The type that holds a constant which `typed` does not, and all of that: the next bit string, or
-/// what is expected, or a signed one. Null if there is none, or none is needed.
+}  // namespace
+
 const Type* wider_for(const Expression& constant, const Type& typed, const Type* expected) {
     const Wide value = constant.constant.integer;
     const bool is_more_bits =
@@ -90,8 +90,6 @@ const Type* wider_for(const Expression& constant, const Type& typed, const Type*
             return wider;
     return nullptr;
 }
-
-}  // namespace
 
 const Type* unite(Checking& c, Expression& e, const Type* expected) {
     Expression *&left = e.operands[0], *&right = e.operands[1];

@@ -208,6 +208,7 @@ const Type* unite_from(Checking& c, Expression& call, std::size_t first, const T
         common = common->is_real() ? &expected->plain()
                                    : &type_of_literals(call, first, expected->plain());
     if (common->is_any()) common = common->is_real() ? &lreal_type : &dint_type;
+    common = &type_with_literals(call, first, *common, expected);
     const auto is_beyond = [&](const Argument& argument) {
         return is_beyond_single(*argument.value, *common, expected);
     };
@@ -262,7 +263,7 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
     const bool takes_bits = result == Generic::any_ordered || result == Generic::any_elementary;
     const bool suits = !type || result == Generic::any || type->is_number() || type->is_time() ||
                        (takes_bits && type->kind == Kind::bits);
-    return suits ? type : refuse(c, call, "numbers", *type);
+    return suits ? take_back(c, e, type, expected) : refuse(c, call, "numbers", *type);
 }
 
 /// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.
@@ -280,14 +281,16 @@ const Type* check_chosen(Checking& c, Expression*& e, const Type* expected) {
     Expression& call = *e;
     Expression*& choice = call.arguments[0].value;
     if (call.standard->parameters[0].type == Generic::boolean)
-        return coerce(c, choice, bool_type) ? unite_from(c, call, 1, expected) : nullptr;
+        return coerce(c, choice, bool_type)
+                   ? take_back(c, e, unite_from(c, call, 1, expected), expected)
+                   : nullptr;
     become_number(c, choice);
     if (choice->type->is_any() && !coerce(c, choice, lint_type)) return nullptr;
     if (choice->type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
     const Type* type = unite_from(c, call, 1, expected);
     choose_of_others(c, e, type);
-    return type;
+    return take_back(c, e, type, expected);
 }
 
 constexpr const char* write_its_type = "write its type, as in WORD#16#FF";

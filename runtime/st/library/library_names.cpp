@@ -17,6 +17,7 @@ namespace lineshaft::st {
 /// Of all files.
 struct LibraryNames::Index {
     NameMap<std::vector<const LibraryFile*>> by_name;  ///< those that are looked for
+    NameMap<NameSet> values;  ///< of enumerations, and the libraries that have them
     NameMap<const LibraryFile*> by_full_name;
     NameMap<const LibraryFile*> of_siemens;  ///< that Siemens' sources name without their library
     NameSet of_catalog;  ///< names that are not looked for unless their library is taken
@@ -87,13 +88,48 @@ NameSet names_of(const Catalog& catalog) {
     return names;
 }
 
+struct DeclaredName {
+    std::string_view name;
+    bool is_value;  ///< of an enumeration
+};
+
+/// By the lines that they stand in.
+std::vector<DeclaredName> names_in(const LibraryFile& file) {
+    std::vector<DeclaredName> names;
+    bool in_values = false, in_globals = false;
+    for (std::string_view rest = file.text; !rest.empty();) {
+        std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        const bool is_inside = line.starts_with("    ") && !line.starts_with("     ");
+        const bool ends = line.starts_with(")") || line.starts_with("END_");
+        if (ends) in_values = in_globals = false;
+        if ((in_values || in_globals) && is_inside && is_of_name(line[4]))
+            names.push_back({first_word(line), in_values});
+        if (line.empty() || is_inside || ends || !is_of_name(line[0])) continue;
+        const std::string_view kind = first_word(line);
+        in_globals = in_globals || kind == "VAR_GLOBAL";
+        const bool is_type = kind == "TYPE";
+        if (!is_type && kind != "FUNCTION" && kind != "FUNCTION_BLOCK" && kind != "CLASS" &&
+            kind != "INTERFACE")
+            continue;
+        std::string_view name = first_word(line);
+        while (is_modifier(name)) name = first_word(line);
+        const bool is_part = line.starts_with('.');  // of "AXIS_REF.fSetPosition"
+        if (is_part) name = first_word(line);
+        if (kind != "FUNCTION" || is_part || !is_helper(name)) names.push_back({name, false});
+        in_values = is_type && line.ends_with("(");
+    }
+    return names;
+}
+
 LibraryNames::Index make_index(const Catalog& catalog) {
     LibraryNames::Index index;
     index.of_catalog = names_of(catalog);
     for (const LibraryFile& file : catalog.libraries()) {
         index.libraries[file.library].push_back(&file);
         index.firsts.insert(file.library.substr(0, file.library.find('.')));
-        for (const std::string_view name : LibraryNames::declared_in(file)) {
+        for (const auto& [name, is_value] : names_in(file)) {
+            if (is_value) index.values[name].insert(file.library);
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
@@ -158,29 +194,7 @@ LibraryNames::LibraryNames(const Catalog& catalog, const std::vector<LibraryRefe
 
 std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file) {
     std::vector<std::string_view> names;
-    bool in_values = false, in_globals = false;
-    for (std::string_view rest = file.text; !rest.empty();) {
-        std::string_view line = rest.substr(0, rest.find('\n'));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-        const bool is_inside = line.starts_with("    ") && !line.starts_with("     ");
-        const bool ends = line.starts_with(")") || line.starts_with("END_");
-        if (ends) in_values = in_globals = false;
-        if ((in_values || in_globals) && is_inside && is_of_name(line[4]))
-            names.push_back(first_word(line));
-        if (line.empty() || is_inside || ends || !is_of_name(line[0])) continue;
-        const std::string_view kind = first_word(line);
-        in_globals = in_globals || kind == "VAR_GLOBAL";
-        const bool is_type = kind == "TYPE";
-        if (!is_type && kind != "FUNCTION" && kind != "FUNCTION_BLOCK" && kind != "CLASS" &&
-            kind != "INTERFACE")
-            continue;
-        std::string_view name = first_word(line);
-        while (is_modifier(name)) name = first_word(line);
-        const bool is_part = line.starts_with('.');  // of "AXIS_REF.fSetPosition"
-        if (is_part) name = first_word(line);
-        if (kind != "FUNCTION" || is_part || !is_helper(name)) names.push_back(name);
-        in_values = is_type && line.ends_with("(");
-    }
+    for (const DeclaredName& declared : names_in(file)) names.push_back(declared.name);
     return names;
 }
 
@@ -218,10 +232,12 @@ void LibraryNames::note(const Token& name) {
     const auto own = std::ranges::find(it->second, reading_, &LibraryFile::library);
     if (own != it->second.end()) return take(**own);
     names_.insert(it->first);
+    if (!reading_.empty()) of_libraries_.insert(it->first);
     if (is_twincat) of_twincat_.insert(it->first);
     if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
     const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
     if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);
+    if (in_studio) of_studio_.insert(it->first);
 }
 
 /// A block of the catalogue that another one extends.
@@ -291,6 +307,12 @@ std::string_view LibraryNames::block_of(const Declaration& declared) const {
     return it == index_.by_name.end() ? std::string_view() : it->first;
 }
 
+void LibraryNames::note_pin(std::string_view block, const Argument& argument) {
+    pins_[block].insert(argument.name.text);
+    if (argument.value && argument.value->kind == Expression::Kind::name)
+        given_.insert(argument.value->token.text);
+}
+
 void LibraryNames::note_pins(const Tree& tree) {
     NameMap<std::string_view> instances;
     for (const Declaration& declared : tree.declarations) {
@@ -299,7 +321,7 @@ void LibraryNames::note_pins(const Tree& tree) {
         instances.emplace(declared.name.text, block);
         if (!declared.initial) continue;
         for (const Argument& argument : declared.initial->arguments)
-            if (argument.is_named()) pins_[block].insert(argument.name.text);
+            if (argument.is_named()) note_pin(block, argument);
     }
     if (instances.empty()) return;
     for (const Expression& e : tree.expressions) {
@@ -310,7 +332,7 @@ void LibraryNames::note_pins(const Tree& tree) {
         NameSet& pins = pins_[it->second];
         if (e.kind == Expression::Kind::member) pins.insert(e.token.text);
         for (const Argument& argument : e.arguments)
-            if (argument.is_named()) pins.insert(argument.name.text);
+            if (argument.is_named()) note_pin(it->second, argument);
     }
 }
 
@@ -349,15 +371,29 @@ bool LibraryNames::names_values_of_plcopen() const {
     });
 }
 
+/// A value of an enumeration whose library the sources have not asked for.
+bool LibraryNames::is_hidden(const LibraryFile& file, std::string_view name) const {
+    const NameSet* libraries = find_in(index_.values, name);
+    if (!libraries || !libraries->contains(file.library)) return false;
+    const bool is_of_twincat = file.library.starts_with("Tc");
+    const bool is_foreign = is_of_twincat || file.library.starts_with("SM3_");
+    const bool is_with_all =
+        references_.empty() ? file.library.starts_with("Tc2_") : file.library == "Tc2_System";
+    return !references_.contains(file.library) && !taken_libraries_.contains(file.library) &&
+           !of_libraries_.contains(name) && !given_.contains(name) &&
+           !(of_twincat_.contains(name) && is_with_all) &&
+           !(of_studio_.contains(name) && !is_foreign);
+}
+
 const LibraryFile* LibraryNames::choose(std::string_view name) const {
     std::vector<const LibraryFile*> files = index_.by_name.at(name);
     const bool in_twincat = of_twincat_.contains(name);
     const bool are_plcopens = names_values_of_plcopen() && !taken_libraries_.contains("SM3_Basic");
     std::erase_if(files, [&](const LibraryFile* file) {
         const bool is_softmotion = file->library.starts_with("SM3_");
-        const bool is_plcopens = file->library == plcopen_enumerations;
-        return pins_of(*file, name) == 0 || (is_softmotion && in_twincat) ||
-               (is_plcopens && !are_plcopens);
+        if (file->library == plcopen_enumerations)
+            return pins_of(*file, name) == 0 || !are_plcopens;
+        return pins_of(*file, name) == 0 || (is_softmotion && in_twincat) || is_hidden(*file, name);
     });
     const auto plcopens = std::ranges::find(files, plcopen_enumerations, &LibraryFile::library);
     if (plcopens != files.end() && index_.by_name.at(name).size() > 1) return *plcopens;

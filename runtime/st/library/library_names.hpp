@@ -34,7 +34,11 @@ namespace lineshaft::st {
 /// than half of it where the project refers to other libraries, of which some are not here. Names
 /// of a library that is not open, and of helpers, which begin with a small letter, are not looked
 /// for, nor other names in SCL, nor what is the name of a variable of the sources, or of the
-/// library's file that is read. A library whose namespace the sources declare themselves is theirs.
+/// library's file that is read. A value of an enumeration, named alone, is looked for in those
+/// libraries alone that the project refers to, or of which something else is taken, or where it is
+/// given to a pin of a block that libraries have (`BufferMode := Buffered`); in TwinCAT's files
+/// without a project in all `Tc2_`, in those of Automation Studio in all of B&R. A library whose
+/// namespace the sources declare themselves is theirs.
 class LibraryNames {
   public:
     /// `references` are those that a project has to libraries that are here, `misses_some`: it has
@@ -65,6 +69,8 @@ class LibraryNames {
     void note_names(const Tree& tree);
     void note_qualified(const Tokens& tokens, std::size_t at);
     void note_pins(const Tree& tree);
+    void note_pin(std::string_view block, const Argument& argument);
+    bool is_hidden(const LibraryFile& file, std::string_view name) const;
     std::string_view block_of(const Declaration& declared) const;
     std::optional<std::size_t> pins_of(const LibraryFile& file, std::string_view name) const;
     bool is_another(const LibraryFile& file, std::string_view name) const;
@@ -82,8 +88,9 @@ class LibraryNames {
     bool misses_some_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0,
                 declarations_ = 0;  ///< that were looked at
-    std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_,
-        of_siemens_;                            ///< as libraries write them
+    std::set<std::string_view> names_, of_twincat_, of_matiec_, of_mapp_, of_siemens_, of_studio_,
+        of_libraries_;                          ///< as libraries write them
+    NameSet given_;                             ///< to pins of blocks that libraries have
     std::map<std::string_view, NameSet> pins_;  ///< that are named of what several libraries have
     std::set<std::string_view> said_;           ///< libraries, and names in full
     std::string_view reading_;                  ///< the library whose file is looked at

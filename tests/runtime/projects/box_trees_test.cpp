@@ -113,6 +113,32 @@ Read read(const std::string& xml) {
     return made;
 }
 
+/// With a FUNCTION_BLOCK Motor in a file of its own, of which the unit has an instance.
+std::string text_with_motor(const std::string& networks) {
+    const test::Folder folder;
+    std::string xml = unit(networks);
+    xml.replace(xml.find("timer"), 5, "motor : Motor; timer");
+    std::ofstream(folder / "P.TcPOU", std::ios::binary) << xml;
+    std::ofstream(folder / "Motor.st") << "FUNCTION_BLOCK Motor VAR n : INT; END_VAR\n"
+                                          "METHOD Sum : INT VAR_INPUT one : INT; END_VAR\n"
+                                          "VAR_OUTPUT isLarge : BOOL; END_VAR\nSum := one;\n"
+                                          "END_METHOD\nMETHOD Find VAR_OUTPUT at : INT; END_VAR\n"
+                                          "at := n; END_METHOD\nACTION Turn: n := 5; END_ACTION\n"
+                                          "END_FUNCTION_BLOCK\n";
+    Diagnostics out;
+    std::vector<std::shared_ptr<const SourceFile>> sources;
+    std::string text;
+    for (const char* name : {"P.TcPOU", "Motor.st"}) {
+        const Project project = read_project(folder / name, {}, out);
+        sources.insert(sources.end(), project.sources.begin(), project.sources.end());
+        if (text.empty()) text = sources.front()->text;
+    }
+    st::compile(sources, standard_blocks(), out);
+    CHECK(out.empty());
+    for (const Diagnostic& diagnostic : out.list()) UNSCOPED_INFO(diagnostic.whole_message());
+    return text.substr(text.find("END_VAR\n") + 8);
+}
+
 std::string text_of(const std::string& networks) {
     const Read made = read(unit(networks));
     CHECK(made.messages == "");
@@ -170,6 +196,46 @@ TEST_CASE("a box of TwinCAT's networks may be named by the sign of its operator"
                                       .call = "Ne",
                                       .inputs = {leaf("x", 0, "INT"), leaf("y", 0, "INT")}}),
                                  {operand("a")}))) == "\na := x <> y;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("a box of TwinCAT's networks calls a METHOD or an ACTION of the instance beside it") {
+    const std::string enabled = leaf("a");
+    const std::string sum = box({.type = "Motor.Sum",
+                                 .call = "Method",
+                                 .instance = "motor",
+                                 .inputs = {enabled, leaf("x", 0, "INT")},
+                                 .names = {"EN", "one"},
+                                 .outputs = {"ENO", "Sum", "isLarge"},
+                                 .takers = {operand(""), operand("z", 0, "INT"), operand("c")},
+                                 .has_en = true,
+                                 .has_eno = true});
+    CHECK(text_with_motor(network(sum)) ==
+          "\nVAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN\n"
+          "z := motor.Sum(one := x, isLarge => c);\nEND_IF\nEND_PROGRAM\n");
+    const auto call = [&](const std::string& type, const std::string& kind,
+                          const std::vector<std::string>& outputs,
+                          const std::vector<std::string>& takers) {
+        return box({.type = type,
+                    .call = kind,
+                    .instance = "motor",
+                    .inputs = {enabled},
+                    .names = {"EN"},
+                    .outputs = outputs,
+                    .takers = takers,
+                    .has_en = true,
+                    .has_eno = true});
+    };
+    CHECK(text_with_motor(network(call("Motor.Turn", "Action", {"ENO"}, {operand("")}))) ==
+          "\nVAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN\nmotor.Turn();\n"
+          "END_IF\nEND_PROGRAM\n");
+    CHECK(text_with_motor(network(call("Motor.Find", "Method", {"ENO", "at"},
+                                       {operand(""), operand("y", 0, "INT")}))) ==
+          "\nVAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN\n"
+          "motor.Find(at => y);\nEND_IF\nEND_PROGRAM\n");
+    CHECK(text_with_motor(network(call("Motor.Sum", "Method", {"ENO", "Sum", "isLarge"},
+                                       {operand(""), operand(""), operand("")}))) ==
+          "\nVAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := a;\nIF _wire1 THEN\n"
+          "motor.Sum();\nEND_IF\nEND_PROGRAM\n");
 }
 
 TEST_CASE("a wire of TwinCAT's networks has its value from where it is defined") {

@@ -170,6 +170,46 @@ TEST_CASE("boxes are operators, calls of functions, and calls of blocks") {
           "timer(IN := NOT a, PT := T#1s);\nb := NOT timer.Q;\nEND_PROGRAM\n");
 }
 
+TEST_CASE("a box calls a METHOD or an ACTION of the instance beside it") {
+    const auto call = [](const std::string& kind) {
+        return "<addData><data name=\"fbdcalltype\"><CallType xmlns=\"\">" + kind +
+               "</CallType></data></addData>";
+    };
+    const auto with = [](std::string drawn, const std::string& more) {
+        return drawn.insert(drawn.rfind("</block>"), more);
+    };
+    const std::string beside = "instanceName=\"motor\"";
+    std::string xml = program(
+        "FBD", in_variable(1, "a") + in_variable(2, "x") +
+                   with(box(3, 0, "Motor.Stop", input("EN", from(1)) + input("way", from(2)),
+                            {"ENO", "Stop"}, beside),
+                        call("method")) +
+                   out_variable(4, 5, "b", from(3, "Stop")) +
+                   with(box(5, 10, "Motor.Find", "", {"at"}, beside), call("method")) +
+                   out_variable(6, 15, "y", from(5, "at")) +
+                   with(box(7, 20, "Motor.Stop", input("way", from(2)), {"Stop"}, beside),
+                        call("method")) +
+                   with(box(8, 30, "Motor.Turn", "", {}, beside), call("action")));
+    xml.insert(xml.find("<variable name=\"a\""), variable("motor", "<derived name=\"Motor\"/>"));
+    const auto method = [](const std::string& name, const std::string& interface) {
+        return "<data name=\"method\"><Method name=\"" + name + "\"><interface>" + interface +
+               "</interface><body><ST><xhtml>;</xhtml></ST></body></Method></data>";
+    };
+    xml.insert(xml.find("<pou name"),
+               "<pou name=\"Motor\" pouType=\"functionBlock\"><interface/><actions><action "
+               "name=\"Turn\"><body><ST><xhtml>;</xhtml></ST></body></action></actions><body><ST>"
+               "<xhtml>;</xhtml></ST></body><addData>" +
+                   method("Stop", "<returnType><BOOL/></returnType><inputVars>" +
+                                      variable("way", "<INT/>") + "</inputVars>") +
+                   method("Find", "<outputVars>" + variable("at", "<INT/>") + "</outputVars>") +
+                   "</addData></pou>\n");
+    const Read made = read(xml);
+    CHECK(made.messages == "");
+    CHECK(made.text.substr(made.text.rfind("END_VAR\n") + 8) ==
+          "IF a THEN b := motor.Stop(x); END_IF\nmotor.Stop(x);\nmotor.Find(at => _wire1);\n"
+          "y := _wire1;\nmotor.Turn();\nEND_PROGRAM\n");
+}
+
 TEST_CASE("a box with EN is called while it is TRUE, and ENO says so") {
     CHECK(diagram(
               in_variable(1, "a") + in_variable(2, "x") + in_variable(3, "y") +

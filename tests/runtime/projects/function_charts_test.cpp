@@ -196,7 +196,8 @@ TEST_CASE("what goes back in a chart has the value of the last scan") {
     chart.connect(chart.input("y", 1, 3), above.in[1]);
     chart.output("b", either.out[0], 30, 1);
     CHECK(text_of(chart) ==
-          "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := x > y;\nb := a OR _wire1;\nEND_PROGRAM\n");
+          "VAR\n    _wire1 : BOOL;\n    _wire2 : BOOL;\nEND_VAR\n_wire2 := a OR _wire1;\n"
+          "_wire1 := x > y;\nb := _wire2;\nEND_PROGRAM\n");
 }
 
 TEST_CASE("a function of a chart is called once, also where several take its result") {
@@ -209,6 +210,48 @@ TEST_CASE("a function of a chart is called once, also where several take its res
     CHECK(text_of(chart) ==
           "VAR\n    _wire1 : BOOL;\nEND_VAR\n_wire1 := INT_TO_BOOL(x);\nx := y;\na := _wire1;\n"
           "b := _wire1;\nEND_PROGRAM\n");
+}
+
+TEST_CASE("what goes back through operators of bits in a chart is a truth, or of their type") {
+    Chart chart;
+    const auto no = chart.box({.type = "NOT", .inputs = {""}}, 10, 1);
+    const auto both = chart.box({.type = "AND", .inputs = {"", ""}}, 20, 1);
+    chart.output("b", no.out[0], 30, 1);
+    chart.connect(chart.input("a", 1, 1), both.in[0]);
+    chart.connect(no.out[0], both.in[1]);
+    chart.connect(both.out[0], no.in[0]);
+    CHECK(text_of(chart) ==
+          "VAR\n    _wire1 : BOOL;\n    _wire2 : BOOL;\nEND_VAR\n"
+          "_wire2 := NOT _wire1;\n_wire1 := a AND _wire2;\nb := _wire2;\n"
+          "END_PROGRAM\n");
+}
+
+TEST_CASE("a box of a chart calls a METHOD of the instance beside it") {
+    Chart chart;
+    const auto find = chart.box({.type = "Motor.Find",
+                                 .call = "Method",
+                                 .instance = "motor",
+                                 .inputs = {"EN", "one"},
+                                 .outputs = {"ENO", "at", "found"}},
+                                10, 1);
+    chart.connect(chart.input("a", 1, 1), find.in[0]);
+    chart.connect(chart.input("x", 1, 2), find.in[1]);
+    chart.output("y", find.out[1], 30, 2);
+    chart.output("b", find.out[2], 30, 3);
+    const auto sum = chart.box({.type = "Motor.Sum",
+                                .call = "Method",
+                                .instance = "motor",
+                                .inputs = {"one"},
+                                .outputs = {"Sum"}},
+                               10, 5);
+    chart.connect(chart.input("x", 1, 6), sum.in[0]);
+    chart.output("z", sum.out[0], 30, 6);
+    chart.box({.type = "Motor.Turn", .call = "Action", .instance = "motor", .outputs = {}}, 10, 8);
+    CHECK(
+        read(chart.unit()).text ==
+        "VAR\n    _wire1 : INT;\n    _wire2 : BOOL;\n    _wire3 : INT;\nEND_VAR\nIF a THEN\n"
+        "motor.Find(one := x, at => _wire1, found => _wire2);\nEND_IF\ny := _wire1;\n"
+        "b := _wire2;\n_wire3 := motor.Sum(one := x);\nz := _wire3;\nmotor.Turn();\nEND_PROGRAM\n");
 }
 
 TEST_CASE("jumps, returns and labels of a chart") {
