@@ -131,7 +131,10 @@ Slot emit_replace(Emission& e) {
 
 Slot emit_find(Emission& e) {
     const Slot in = e.text(0);
-    const Slot what = e.text(1), found = e.wanted_slot();
+    const Slot what = e.text(1);
+    if (e.call.place.dialect().vendor == Vendor::matiec && !e.is_wide())
+        return e.result(Op::matiec_text_find, in, what);
+    const Slot found = e.wanted_slot();
     e.put(Op::text_find, found, in, what, e.is_wide());
     return found;
 }
@@ -146,7 +149,7 @@ constexpr StandardFunction texts[] = {
      emit_length},
     {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
      [](Emission& e) { return e.capacity(0); }},
-    {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",
+    {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not; MatIEC goes on behind what differs, and does not find 'ab' in 'aab'",
      Typing::texts, emit_find},
     {"CONCAT(IN1, IN2, ...: STRING): STRING", "the texts one behind the other", Typing::texts, emit_concatenate},
     {"LEFT(IN: STRING; L: ANY_INT): STRING", "the first L characters", Typing::texts, emit_left},

@@ -216,8 +216,19 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
     return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
 }
 
+/// Of MatIEC's digits only as many as there is room for are kept, and what has others than those of
+/// numbers is 0.
+Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
+    if (!e.type->is_bits())
+        return w.emit(Op::mul_ulint, none, from, w.emit(Op::is_bcd, none, from));
+    std::uint64_t beyond = 1;
+    for (int digit = 0; digit < e.type->bits / 4; ++digit) beyond *= 10;
+    return w.emit(Op::mod_ulint, none, from, w.constant_slot(beyond));
+}
+
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
-    const Slot from = value(w, *e.operands[0]);
+    Slot from = value(w, *e.operands[0]);
+    if (e.place.dialect().vendor == Vendor::matiec) from = suited_to_matiec(w, e, from);
     if (e.type->is_bits())
         return w.emit(Op::to_bcd, wanted, from, static_cast<Slot>(e.type->bits / 4));
     return w.emit(of_type(Op::wrap_sint, *e.type), wanted, w.emit(Op::from_bcd, none, from));
@@ -257,6 +268,44 @@ static Slot s7_integer_of(Writing& w, Slot text, const Type& type, Slot wanted) 
     return to;
 }
 
+/// As MatIEC's C library has it: of a time seconds.
+static Slot matiec_number_of_text(Writing& w, Slot text, const Type& type, Slot wanted) {
+    if (type.is_real()) {
+        const Slot real = w.emit(Op::matiec_real_of_text, none, text);
+        return type.bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
+    }
+    const Slot whole = w.emit(Op::matiec_integer_of_text, none, text, type.is_time());
+    if (type.is_time()) return convert_counted(w, whole, type, of_seconds, wanted);
+    return w.emit(of_type(Op::wrap_sint, type), wanted, whole);
+}
+
+static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
+    const Vendor vendor = e.place.dialect().vendor;
+    const bool is_codesys = vendor == Vendor::codesys;
+    const Slot groups = is_codesys || vendor == Vendor::none ? 1 : 0;
+    const bool is_s7 = is_of_s7(e);
+    if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
+    if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, is_codesys);
+    if (e.type->is_character) {
+        const Slot to = w.result(wanted);
+        w.put(Op::text_character, to, text, w.constant_slot(1),
+              TextRoom(1, e.type->bits == 16).number());
+        return to;
+    }
+    if (vendor == Vendor::matiec) return matiec_number_of_text(w, text, e.type->plain(), wanted);
+    if (e.type->kind == Kind::real) {
+        const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
+                                : w.emit(Op::real_of_text, none, text, groups);
+        return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
+    }
+    if (e.type->is_time()) {
+        const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
+        return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
+    }
+    return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
+                  w.emit(Op::integer_of_text, none, text, groups));
+}
+
 Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
@@ -268,33 +317,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     }
     if (operand.type->is_reference())
         return convert(w, address_number(w, operand), lint_type, *e.type, false, wanted);
-    if (operand.type->kind == Kind::text) {
-        const Slot text = text_address(w, operand);
-        const Vendor vendor = e.place.dialect().vendor;
-        const bool is_codesys = vendor == Vendor::codesys;
-        const Slot groups = is_codesys || vendor == Vendor::none ? 1 : 0;
-        const bool is_s7 = is_of_s7(e);
-        if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
-        if (e.type->kind == Kind::real) {
-            const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
-                                    : w.emit(Op::real_of_text, none, text, groups);
-            return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
-        }
-        if (e.type->kind == Kind::boolean)
-            return w.emit(Op::truth_of_text, wanted, text, is_codesys);
-        if (e.type->is_time()) {
-            const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
-            return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
-        }
-        if (e.type->is_character) {
-            const Slot to = w.result(wanted);
-            w.put(Op::text_character, to, text, w.constant_slot(1),
-                  TextRoom(1, e.type->bits == 16).number());
-            return to;
-        }
-        return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
-                      w.emit(Op::integer_of_text, none, text, groups));
-    }
+    if (operand.type->kind == Kind::text) return of_text(w, e, text_address(w, operand), wanted);
     if (e.conversion.is_bcd) return convert_bcd(w, e, wanted);
     if (!e.conversion.is_written && is_wide(w, operand) &&
         (e.type->is_number() || e.type->is_bits()))
