@@ -55,8 +55,9 @@ std::string_view why_no_place(const Expression& e, bool is_pointer) {
     if (root.variable && root.variable->constant && !is_pointer) return "a constant has no place";
     const bool is_standard =
         root.kind == E::member && root.operands[0]->type->kind == Kind::standard;
-    if (is_standard || e.type->is_object())
-        return "a part of a standard block cannot be referred to";
+    const bool is_value = e.type->is_scalar() && e.type->kind != Kind::enumeration;
+    if ((is_standard && !is_value) || e.type->is_object())
+        return "that part of a standard block cannot be referred to";
     return {};
 }
 
