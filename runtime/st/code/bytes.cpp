@@ -92,7 +92,7 @@ std::byte byte_of_text(const Shape& shape, const std::byte* slots, std::uint64_t
     const std::uint64_t length = slot_value(slots), room = shape.type->length;
     if (shape.is_s7 && at < 2) return static_cast<std::byte>(at == 0 ? room : length);
     if (shape.is_s7) at -= 2;
-    return at == length || at >= room ? std::byte{0} : slots[8 + at];
+    return (at == length && at < room) || at > room ? std::byte{0} : slots[8 + at];
 }
 
 /// Where another text begins at `first`, too: the first 0 ends it.
@@ -104,7 +104,8 @@ void set_units(const Shape& shape, std::byte* slots, std::uint64_t first, std::u
     set_memory_of_units(slots, memory);
 }
 
-/// A text ends with its first 0, or with its room; on an S7 where it says.
+/// A text ends with its first 0, or with its room, behind which there is a byte more; on an S7 where
+/// it says.
 void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::uint64_t count,
               const std::byte* from) {
     if (shape.type->is_wide) return set_units(shape, slots, first, count, from);
@@ -114,7 +115,7 @@ void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::ui
         const std::uint64_t place = shape.is_s7 ? at - 2 : at;
         if (shape.is_s7 && at == 1)
             set_slot(slots, std::min(std::to_integer<std::uint64_t>(*from), room));
-        if (place < room) slots[8 + place] = *from;
+        if (place <= room) slots[8 + place] = *from;
     }
     if (shape.is_s7) return;
     const std::byte* end = std::find(slots + 8, slots + 8 + room, std::byte{0});

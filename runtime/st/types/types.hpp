@@ -123,6 +123,8 @@ struct Type {
     /// Of a text: its room, and the bytes that its slots have room for.
     TextRoom room() const { return {length, is_wide}; }
     std::uint32_t text_bytes() const { return is_wide ? 3 * length : length; }
+    /// Its length, its bytes, and the one that a controller has behind them for a 0.
+    std::uint32_t text_slots() const { return 1 + (text_bytes() + 1U + 7U) / 8; }
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// Of an array of all its dimensions.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }
