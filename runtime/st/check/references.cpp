@@ -260,6 +260,7 @@ const Type* resolve_reference(Checking& c, const TypeText& text) {
                                 : text.name.word == Word::pointer_ ? Referring::pointer
                                                                    : Referring::alias;
     Type& type = make_reference(c, referring, nullptr);
+    type.pointer_bytes = text.name.place.dialect().pointer_bytes;
     c.checked.has_references = true;
     if (c.knows_types)
         type.element = resolve(c, *text.element);

@@ -104,8 +104,8 @@ void set_units(const Shape& shape, std::byte* slots, std::uint64_t first, std::u
     set_memory_of_units(slots, memory);
 }
 
-/// A text ends with its first 0, or with its room, behind which there is a byte more; on an S7 where
-/// it says.
+/// A text ends with its first 0, or with its room, behind which there is a byte more; on an S7
+/// where it says.
 void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::uint64_t count,
               const std::byte* from) {
     if (shape.type->is_wide) return set_units(shape, slots, first, count, from);
@@ -134,7 +134,8 @@ Fault read_leaf(const Code& code, const Leaf& leaf, std::uint64_t first, std::ui
     const Shape& shape = code.shapes[leaf.number];
     switch (shape.kind) {
         case Shape::Kind::scalar:
-            std::memcpy(to, bytes_of_scalar(shape, scalar_value(shape, leaf.slots)).data() + first, count);
+            std::memcpy(to, bytes_of_scalar(shape, scalar_value(shape, leaf.slots)).data() + first,
+                        count);
             return Fault::none;
         case Shape::Kind::text:
             for (std::uint64_t i = 0; i < count; ++i)

@@ -77,6 +77,7 @@ struct Type {
     std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};  ///< of a structure, a union
     std::uint8_t pack = 1;  ///< of these, of a block: bytes that a member is aligned to at most
+    std::uint8_t pointer_bytes = 8;            ///< of a reference
     bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
