@@ -192,6 +192,13 @@ bool wraps(const Type& to, Wide value, const Dialect& dialect) {
            value < pattern;
 }
 
+/// `timer.PT := 500;` of B&R, whose TIME is a DINT.
+bool counts_ms(const Expression& e, const Type& to) {
+    return e.place.dialect().vendor == Vendor::automation_studio && to.kind == Kind::time &&
+           e.type->kind == Kind::any_integer && e.constant.integer >= smallest(dint_type) &&
+           e.constant.integer <= largest(dint_type);
+}
+
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     const Wide value = e->constant.integer;
@@ -208,6 +215,7 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
     const bool no_time = to.kind == Kind::time && value == 0;
     if (to.is_any() || bit || no_time) return take_type(c, e, to, e->constant);
+    if (counts_ms(*e, to)) return take_type(c, e, to, {.integer = value * 1'000'000});
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_wrapped =
