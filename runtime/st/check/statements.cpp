@@ -165,6 +165,10 @@ void check_case(Checking& c, Statement*& slot) {
         return rewrite_case_of_texts(c, slot);
     Statement& s = *slot;
     if (type) type = select_by_numbers(c, s, *type);
+    if (type) {
+        look_in_register(c, s.value);
+        type = s.value->type;
+    }
     if (type && type->kind == Kind::any_integer)
         type = coerce(c, s.value, lint_type) ? &lint_type : nullptr;
     const bool fits =
