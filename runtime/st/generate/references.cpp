@@ -343,6 +343,44 @@ Location locate_target(Writing& w, const Expression& e) {
     return {Mode::address, 0, w.emit(Op::reach, none, from, shape_number(w, *e.type))};
 }
 
+bool is_element_of_target(const Expression& e) {
+    if (e.kind != E::index || e.operands[0]->kind != E::deref) return false;
+    const Expression& array = *e.operands[0];
+    return array.type->kind == Kind::array && !has_bytes(*array.type) &&
+           array.operands[0]->kind != E::refer;
+}
+
+Location locate_element_of_target(Writing& w, const Expression& e) {
+    const Expression& array = *e.operands[0];
+    const bool calls = std::ranges::any_of(
+        e.arguments, [](const Argument& index) { return has_call(*index.value); });
+    Slot at = reference(w, *array.operands[0]);
+    if (calls) at = copied(w, {Mode::slot, at});
+    std::uint64_t first = 0;
+    Slot bytes = none;
+    const Type* type = array.type;
+    for (const Argument& argument : e.arguments) {
+        const std::uint64_t stride = bytes_of(*type->element);
+        const Expression& number = *argument.value;
+        if (number.kind == E::constant) {
+            first += static_cast<std::uint64_t>(number.constant.integer - type->lower) * stride;
+        } else {
+            const IndexTable made{type->lower, type->count(), stride};
+            const Slot more = w.emit(Op::index, none, looked_at(w, number), w.table(made));
+            bytes = bytes == none ? more : w.emit(Op::add_lint, none, bytes, more);
+        }
+        type = type->element;
+    }
+    if (bytes == none)
+        bytes = w.constant_slot(first);
+    else if (first != 0)
+        bytes = w.emit(Op::add_lint, none, bytes, w.constant_slot(first));
+    if (!is_growing(w, *e.type)) slots_of(w, *e.type);
+    const Slot element = w.new_temporary(reference_slots);
+    w.put(Op::move_reference, element, at, bytes);
+    return {Mode::address, 0, w.emit(Op::reach, none, element, shape_number(w, *e.type))};
+}
+
 Slot compare_references(Writing& w, const Expression& e) {
     const auto [a, b] = operands(w, e);
     return w.emit(Op::compare_references, none, a, b);
