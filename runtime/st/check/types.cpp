@@ -255,12 +255,16 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
 const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
-    const bool is_whole =
-        base->kind == Kind::integer || (base->kind == Kind::bits && text.place.dialect().is_loose);
-    if (!is_whole)
+    const bool are_bits =
+        base->kind == Kind::bits && text.place.dialect().vendor != Vendor::siemens;
+    if (base->kind != Kind::integer && !are_bits)
         return c.fail(code::type_does_not_fit, text.place,
                       fmt::format("{} has no subranges", describe(*base)),
                       "a subrange is one of an integer type");
+    if (are_bits && !text.place.dialect().is_loose)
+        c.warn(code::type_does_not_fit, text.place,
+               fmt::format("{} has no subranges in IEC 61131-3", describe(*base)),
+               fmt::format("write {}, which has them", integer_type(base->bits, false).name));
     Expression *from = text.ranges.front().first, *to = text.ranges.front().second;
     const auto lower = check_whole(c, from, *base), upper = check_whole(c, to, *base);
     if (!lower || !upper) return nullptr;
