@@ -365,6 +365,11 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
 
+/// `axis` of the catalogue is a block of the program; AXIS of a vendor's project is another type.
+static bool is_of_catalog_alone(const Type& type, const Token& name) {
+    return type.is_object() && name.place.dialect().vendor != Vendor::none;
+}
+
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted)
@@ -394,7 +399,8 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    if (const Type* type = standard_type(c, bare, name.place.dialect().vendor)) {
+    const Type* type = standard_type(c, bare, name.place.dialect().vendor);
+    if (type && !is_of_catalog_alone(*type, name)) {
         c.note(name.place, *type);
         return type;
     }
@@ -411,13 +417,11 @@ const Type* resolve_name(Checking& c, const Token& name) {
     for (const auto& [known, type] : c.users.types) names.emplace_back(known);
     for (const auto& [known, routine] : c.users.routines)
         if (routine->type) names.emplace_back(known);
-    for (const BlockType& kind : c.catalog.types()) names.emplace_back(kind.name);
-    std::ranges::sort(names);
-    auto near = nearest(name.text, names);
-    if (near.empty() && c.may_be_foreign(name)) return nullptr;
     for (const BlockType& kind : c.catalog.types())
-        if (!kind.handle.empty())
-            std::ranges::replace(near, std::string(kind.name), std::string(kind.handle));
+        names.emplace_back(kind.handle.empty() ? kind.name : kind.handle);
+    std::ranges::sort(names);
+    const auto near = nearest(name.text, names);
+    if (near.empty() && c.may_be_foreign(name)) return nullptr;
     return c.fail(
         code::not_declared, name.place, fmt::format("'{}' is not a type", name.text),
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));
