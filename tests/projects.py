@@ -1708,6 +1708,22 @@ def check_solution():
         assert "1 of 1" in run("test", *named), named
     two = run("new", "two", "--from", "sln/lib", code=0)
     assert "two.yaml" in two
+    check_library_beside()
+
+
+def check_library_beside():
+    """A project's own library is found beside it in the folder of their solution."""
+    twincat("pair/Lib", "POU", "Ramp", "FUNCTION_BLOCK Ramp\nVAR_OUTPUT n : INT; END_VAR", "n := n + 3;")
+    plcproj("pair/Lib/Lib.plcproj", "Ramps", ["Ramp.TcPOU"])
+    twincat("pair/App", "POU", "MAIN", "PROGRAM MAIN\nVAR a : Ramp; sum : INT; END_VAR", "a(); sum := a.n;")
+    write("pair/App/PlcTask.TcTTO", TASK)
+    plcproj("pair/App/App.plcproj", "App", ["MAIN.TcPOU", "PlcTask.TcTTO"], [("Ramps", "R")])
+    write("pair/Pair.sln", 'Project("{B1}") = "App", "App.tsproj", "{09}"\r\nEndProject\r\n')
+    run("new", "beside", "--from", "pair/App/App.plcproj")
+    text = (work / "beside.yaml").read_text()
+    assert 'sources: ["pair/App/App.plcproj", "pair/Lib/Lib.plcproj"]' in text, text
+    write("beside.yaml", text + "expect:\n  - {at: end, MAIN.sum: 303}\n")
+    run("run", "beside.yaml", "--quiet")
 
 
 def check_named_programs():
