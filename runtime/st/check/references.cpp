@@ -161,7 +161,10 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     if (!to.element) return false;
     const bool are_texts = e->place.dialect().texts_have_any_length && from.kind == Kind::text &&
                            to.element->kind == Kind::text;
-    if (!are_texts && !is_target(to, from)) return refuse_target(c, *e, to, from);
+    const bool are_arrays = dialect.vendor == Vendor::automation_studio &&
+                            from.kind == Kind::array && to.element->kind == Kind::array &&
+                            same_type(*from.element, *to.element->element);
+    if (!are_texts && !are_arrays && !is_target(to, from)) return refuse_target(c, *e, to, from);
     return refer(c, e, to);
 }
 

@@ -99,12 +99,16 @@ Slot convert_counted(Writing& w, Slot slot, const Type& to, Unit counted, Slot w
 Slot convert_real_time(Writing& w, Slot slot, const Type& from, const Type& to, Unit counted,
                        Slot wanted) {
     const Slot unit = w.constant_slot(lreal_type, {.real = static_cast<double>(counted)});
-    if (to.is_time())
-        return w.emit(of_type(Op::round_sint, to), wanted, w.emit(Op::mul_lreal, none, slot, unit));
+    if (to.is_time()) return nearest(w, w.emit(Op::mul_lreal, none, slot, unit), to, false, wanted);
     const Slot real =
         w.emit(from.is_unsigned_64() ? Op::lreal_from_unsigned : Op::lreal_from_signed, none, slot);
     const Slot count = w.emit(Op::div_lreal, wanted, real, unit);
     return to.bits == 32 ? w.emit(Op::narrow, wanted, count) : count;
+}
+
+/// Where a DATE has 32 bits, of s.
+bool is_of_br(const Place& place) {
+    return place.source && place.dialect().vendor == Vendor::automation_studio;
 }
 
 /// A time is in ns as an integer of 64 bits, but in dialects that count those as all others.
@@ -112,7 +116,7 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
     if (number.is_real()) return convert_real_time(w, slot, from, to, unit_of(time), wanted);
-    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    const bool in_days = time.kind == Kind::date && number.bits == 16 && !is_of_br(w.place);
     return number.bits == 64
                ? slot
                : convert_counted(w, slot, to, in_days ? of_days : unit_of(time), wanted);

@@ -39,6 +39,7 @@ const Dialect automation_studio = [] {
     made.vendor = Vendor::automation_studio;
     made.ampersands_may_be_two = false;
     made.open_texts_end_with_lines = made.texts_end_at_zero = true;
+    made.beyond_type = BeyondType::left_in_register;
     return made;
 }();
 
