@@ -31,8 +31,22 @@ Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
     return truncates ? Op::truncated_in_32 : Op::left_in_32;
 }
 
+/// TwinCAT stops where a register does not hold the number, and else keeps as many bits of it.
+bool keeps_bits_of_register(const Source* source) {
+    return source && source->dialect.vendor == Vendor::codesys &&
+           source->dialect.beyond_type == BeyondType::fault && !source->is_prelude();
+}
+
+Slot kept_of_register(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    if (to.bits == 64) return w.emit(to.is_signed ? Op::round_lint : Op::left_in_64, wanted, slot);
+    const bool is_long = to.bits == 32 && !to.is_signed;
+    const Slot whole = w.emit(is_long ? Op::round_lint : Op::round_dint, none, slot);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, whole);
+}
+
 Slot nearest(Writing& w, Slot slot, const Type& to, bool truncates, Slot wanted) {
     const auto* source = w.place.source;
+    if (keeps_bits_of_register(source)) return kept_of_register(w, slot, to, wanted);
     const bool are_left =
         source && source->dialect.beyond_type != BeyondType::fault && !source->is_prelude();
     if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
