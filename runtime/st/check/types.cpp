@@ -399,8 +399,8 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    const Type* type = standard_type(c, bare, name.place.dialect().vendor);
-    if (type && !is_of_catalog_alone(*type, name)) {
+    if (const Type* type = standard_type(c, bare, name.place.dialect().vendor);
+        type && !is_of_catalog_alone(*type, name)) {
         c.note(name.place, *type);
         return type;
     }
