@@ -366,6 +366,11 @@ bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
             variable->type->kind != Kind::text);
 }
 
+/// TRUE and FALSE are words of the language; `"TRUE"` may be a tag.
+bool is_truth(const Token& token) {
+    return same_name(token.text, "true") || same_name(token.text, "false");
+}
+
 /// A value that is named without its enumeration. Empty: none is called so.
 std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
     const Token& token = e->token;
@@ -384,6 +389,8 @@ std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
+    if (!token.quoted && !token.local && is_truth(token))
+        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     const bool is_text = is_text_for(c, *e, expected);
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
@@ -416,8 +423,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (getter) return check_getter(c, e, *getter);
     if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
         return become(c, e, *expected, {});
-    if (same_name(token.text, "true") || same_name(token.text, "false"))
-        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
+    if (is_truth(token)) return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     if (const auto type = check_value_alone(c, e)) return *type;
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));
