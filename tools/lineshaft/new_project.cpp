@@ -148,7 +148,7 @@ std::string path_from(const std::filesystem::path& file, const std::string& path
         .string();
 }
 
-/// Of a `.plcproj` the folder of the solution that it is of, where its libraries may be; else none.
+/// The folder of the solution that a `.plcproj` is of, where its libraries may be; else none.
 std::optional<std::string> solution_of(const std::string& path) {
     constexpr int most_above = 3;
     namespace fs = std::filesystem;

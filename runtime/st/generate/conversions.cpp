@@ -234,8 +234,8 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
     return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
 }
 
-/// Of MatIEC's digits only as many as there is room for are kept, and what has others than those of
-/// numbers is 0.
+/// MatIEC keeps only as many digits as there is room for, and has 0 of what has others than those of
+/// numbers.
 Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
     if (!e.type->is_bits())
         return w.emit(Op::mul_ulint, none, from, w.emit(Op::is_bcd, none, from));
