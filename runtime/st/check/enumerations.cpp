@@ -51,7 +51,7 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
 /// 65535 of an enumeration is -1 of an INT in CODESYS, which is told.
 static bool has_bits_of(Checking& c, Expression*& e, const Type& to) {
     const bool is_taken = is_constant(*e) && !e->type->is_strict && to.kind == Kind::integer &&
-                          to.is_signed && e->place.dialect().vendor == Vendor::codesys &&
+                          to.is_signed && e->place.dialect().is_loose &&
                           e->constant.integer > largest(to) &&
                           e->constant.integer < Wide{1} << to.bits;
     if (!is_taken) return false;

@@ -31,9 +31,18 @@ Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
     return truncates ? Op::truncated_in_32 : Op::left_in_32;
 }
 
+bool is_of_codesys(const Dialect& dialect) {
+    return dialect.vendor == Vendor::codesys;
+}
+
+/// MatIEC's C library.
+bool is_of_c(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::matiec;
+}
+
 /// TwinCAT stops where a register does not hold the number, and else keeps as many bits of it.
 bool keeps_bits_of_register(const Source* source) {
-    return source && source->dialect.vendor == Vendor::codesys &&
+    return source && is_of_codesys(source->dialect) &&
            source->dialect.beyond_type == BeyondType::fault && !source->is_prelude();
 }
 
@@ -139,8 +148,7 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 /// MatIEC counts all times in seconds.
 bool is_of_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
-    return e.place.dialect().vendor == Vendor::matiec && from.is_time() != to.is_time() &&
-           to.kind != Kind::boolean;
+    return is_of_c(e) && from.is_time() != to.is_time() && to.kind != Kind::boolean;
 }
 
 Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
@@ -153,8 +161,7 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
 bool is_cut_by_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const bool is_whole = to.is_integer() || (to.is_bits() && to.bits != from.bits);
-    return e.place.dialect().vendor == Vendor::matiec && from.is_real() && is_whole &&
-           !e.conversion.truncates;
+    return is_of_c(e) && from.is_real() && is_whole && !e.conversion.truncates;
 }
 
 Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
@@ -234,8 +241,8 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
     return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
 }
 
-/// MatIEC keeps only as many digits as there is room for, and has 0 of what has others than those of
-/// numbers.
+/// MatIEC keeps only as many digits as there is room for, and has 0 of what has others than those
+/// of numbers.
 Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
     if (!e.type->is_bits())
         return w.emit(Op::mul_ulint, none, from, w.emit(Op::is_bcd, none, from));
@@ -246,7 +253,7 @@ Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
     Slot from = value(w, *e.operands[0]);
-    if (e.place.dialect().vendor == Vendor::matiec) from = suited_to_matiec(w, e, from);
+    if (is_of_c(e)) from = suited_to_matiec(w, e, from);
     if (e.type->is_bits())
         return w.emit(Op::to_bcd, wanted, from, static_cast<Slot>(e.type->bits / 4));
     return w.emit(of_type(Op::wrap_sint, *e.type), wanted, w.emit(Op::from_bcd, none, from));
@@ -298,9 +305,8 @@ static Slot matiec_number_of_text(Writing& w, Slot text, const Type& type, Slot 
 }
 
 static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
-    const Vendor vendor = e.place.dialect().vendor;
-    const bool is_codesys = vendor == Vendor::codesys;
-    const Slot groups = is_codesys || vendor == Vendor::none ? 1 : 0;
+    const bool is_codesys = is_of_codesys(e.place.dialect());
+    const Slot groups = is_codesys || e.place.dialect().vendor == Vendor::none ? 1 : 0;
     const bool is_s7 = is_of_s7(e);
     if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
     if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, is_codesys);
@@ -310,7 +316,7 @@ static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
               TextRoom(1, e.type->bits == 16).number());
         return to;
     }
-    if (vendor == Vendor::matiec) return matiec_number_of_text(w, text, e.type->plain(), wanted);
+    if (is_of_c(e)) return matiec_number_of_text(w, text, e.type->plain(), wanted);
     if (e.type->kind == Kind::real) {
         const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
                                 : w.emit(Op::real_of_text, none, text, groups);
