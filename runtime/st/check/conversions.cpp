@@ -201,9 +201,9 @@ bool wraps(const Type& to, Wide value, const Dialect& dialect) {
 
 /// `timer.PT := 500;` of B&R, whose TIME is a DINT.
 bool counts_ms(const Expression& e, const Type& to) {
-    return e.place.dialect().vendor == Vendor::automation_studio && to.kind == Kind::time &&
-           e.type->kind == Kind::any_integer && e.constant.integer >= smallest(dint_type) &&
-           e.constant.integer <= largest(dint_type);
+    return to.kind == Kind::time && e.type->kind == Kind::any_integer &&
+           e.constant.integer >= smallest(dint_type) && e.constant.integer <= largest(dint_type) &&
+           e.place.dialect().vendor == Vendor::automation_studio;
 }
 
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {

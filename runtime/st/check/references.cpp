@@ -267,7 +267,8 @@ const Type* resolve_reference(Checking& c, const TypeText& text) {
                                 : text.name.word == Word::pointer_ ? Referring::pointer
                                                                    : Referring::alias;
     Type& type = make_reference(c, referring, nullptr);
-    type.pointer_bytes = text.name.place.dialect().pointer_bytes;
+    const Place& place = text.name.place;
+    if (place.source) type.pointer_bytes = place.dialect().pointer_bytes;
     c.checked.has_references = true;
     if (c.knows_types)
         type.element = resolve(c, *text.element);
