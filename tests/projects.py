@@ -1588,7 +1588,19 @@ def check_awl():
     assert "STL (AWL) of STEP 7, which is not read" in run("check", "old.awl", code=2)
 
 
+def check_symbols_of_apax():
+    """{::ifdef X} of SIMATIC AX asks for the symbols of apax.yml."""
+    write("symbols/apax.yml", "name: s\nvariables:\n  DEFINED_PREPROCESSOR_SYMBOLS:\n    - BAR\n    # - FOO\n")
+    write("symbols/src/a.st", "PROGRAM P\nVAR a, b, c, d : INT; END_VAR\n{::ifdef FOO}\na := 1;\n{::else}\na := 2;\n{::endif}\n"
+          "{::ifndef FOO}\nb := 1;\n{::endif}\n{::ifdef BAR}\nc := 1;\n{::ifdef FOO}\nd := 1; ? {::endif}\n{::endif}\nEND_PROGRAM\n")
+    write("symbols.yaml", "lineshaft: 1\ntitle: t\nsources: [symbols/apax.yml]\ntasks: {main: {every: 10 ms}}\n"
+          "blocks: {p: {type: P, task: main}}\nrun: {for: 10 ms}\nexpect:\n"
+          "  - {at: end, p.a: 2}\n  - {at: end, p.b: 1}\n  - {at: end, p.c: 1}\n  - {at: end, p.d: 0}\n")
+    run("run", "symbols.yaml", "--quiet")
+
+
 def check_apax():
+    check_symbols_of_apax()
     write("package/apax.yml", "name: p\n")
     write("package/src/a.st", "FUNCTION_BLOCK Counter\nVAR_OUTPUT n : INT; END_VAR\nn := n + 1;\nEND_FUNCTION_BLOCK\n")
     write("package/scraps/b.st", "this is nothing\n")
@@ -1708,6 +1720,22 @@ def check_solution():
         assert "1 of 1" in run("test", *named), named
     two = run("new", "two", "--from", "sln/lib", code=0)
     assert "two.yaml" in two
+    check_library_beside()
+
+
+def check_library_beside():
+    """A project's own library is found beside it in the folder of their solution."""
+    twincat("pair/Lib", "POU", "Ramp", "FUNCTION_BLOCK Ramp\nVAR_OUTPUT n : INT; END_VAR", "n := n + 3;")
+    plcproj("pair/Lib/Lib.plcproj", "Ramps", ["Ramp.TcPOU"])
+    twincat("pair/App", "POU", "MAIN", "PROGRAM MAIN\nVAR a : Ramp; sum : INT; END_VAR", "a(); sum := a.n;")
+    write("pair/App/PlcTask.TcTTO", TASK)
+    plcproj("pair/App/App.plcproj", "App", ["MAIN.TcPOU", "PlcTask.TcTTO"], [("Ramps", "R")])
+    write("pair/Pair.sln", 'Project("{B1}") = "App", "App.tsproj", "{09}"\r\nEndProject\r\n')
+    run("new", "beside", "--from", "pair/App/App.plcproj")
+    text = (work / "beside.yaml").read_text()
+    assert 'sources: ["pair/App/App.plcproj", "pair/Lib/Lib.plcproj"]' in text, text
+    write("beside.yaml", text + "expect:\n  - {at: end, MAIN.sum: 303}\n")
+    run("run", "beside.yaml", "--quiet")
 
 
 def check_named_programs():

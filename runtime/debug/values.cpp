@@ -265,7 +265,7 @@ Seat target_of(const Seat& reference, std::int64_t bytes) {
         return frame.seen(st::place_of(slot, frame.root, *frame.context));
     };
     for (std::uint32_t shape = 0; shape < code.shapes.size(); ++shape) {
-        if (!st::same_type(*code.shapes[shape].type, *to)) continue;
+        if (code.shapes[shape].byte || !st::same_type(*code.shapes[shape].type, *to)) continue;
         if (const auto slot = st::slot_of(code, code.pieces[piece - 1].shape, 8 * first, shape))
             return {to, place_of(address + *slot), &frame};
     }

@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "runtime/source/yaml.hpp"
 
 namespace lineshaft::projects {
@@ -68,6 +70,26 @@ fs::path package_of(const fs::path& path) {
         if (fs::exists(at / "apax.yml", unknown) && fs::is_directory(at / "src", unknown))
             return path.is_absolute() ? at : at.lexically_proximate(here);
     return {};
+}
+
+std::shared_ptr<const SourceFile> with_symbols(std::shared_ptr<const SourceFile> source) {
+    if (source->text.find("{::if") == std::string::npos) return source;
+    const fs::path package = package_of(source->path);
+    Diagnostics unread;
+    const auto file =
+        package.empty() ? nullptr : read_source((package / "apax.yml").string(), unread);
+    const auto root = file ? parse_yaml(file, unread) : std::nullopt;
+    const Node* variables = root ? root->find("variables") : nullptr;
+    const bool has_some = variables && variables->is_map();
+    const Node* symbols = has_some ? variables->find("DEFINED_PREPROCESSOR_SYMBOLS") : nullptr;
+    if (!symbols || !symbols->is_sequence()) return source;
+    std::string begin;
+    for (const Node& symbol : symbols->items) begin += fmt::format("{{define {}}}", symbol.text);
+    begin += "\n";
+    auto made = std::make_shared<SourceFile>(*source);
+    made->text = begin + source->text;
+    made->excerpts = {{0, Mark{source, 1, 1}, false}, {begin.size(), Mark{source, 1, 1}, true}};
+    return made;
 }
 
 }  // namespace lineshaft::projects

@@ -38,7 +38,7 @@ void read_as_neighbours(std::vector<std::shared_ptr<const SourceFile>>& sources)
         const st::Vendor vendor = st::dialect_of(source->path, source->text).vendor;
         const fs::path folder = fs::path(source->path).parent_path();
         if (vendor == st::Vendor::matiec) folders[folder] = ".matiec";
-        if (vendor == st::Vendor::codesys) folders.try_emplace(folder, ".exp");
+        if (vendor == st::Vendor::codesys) folders.try_emplace(folder, ".codesys");
     }
     if (folders.empty()) return;
     for (auto& source : sources) {

@@ -60,6 +60,7 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
                           known->help);
     auto source = read_source(path, to.out, where);
     if (!source) return;
+    source = with_symbols(std::move(source));
     read_configuration(to, source);
     if (ends_with(path, ".exp")) {
         read_tasks_of_export(to, *source);

@@ -1,6 +1,8 @@
 #include "runtime/source/diagnostic.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <functional>
 #include <iterator>
 #include <numeric>
@@ -21,7 +23,7 @@ constexpr std::size_t longest_message = 1000;  // characters; a message quotes t
 constexpr std::size_t longest_word = 100;      // bytes that `nearest` compares
 constexpr std::size_t most_kept = 1000;        // diagnostics
 constexpr std::size_t most_names = 12;
-constexpr std::size_t most_meant = 3;
+constexpr std::size_t most_meant = 3, most_edits = 3;
 constexpr std::size_t shortest_abbreviation = 3;
 constexpr std::string_view cut = "...";
 
@@ -143,7 +145,9 @@ auto order(const Diagnostic& d) {
 
 /// Optimal string alignment: insert, remove, replace, exchange of two neighbours cost 1 each.
 std::size_t distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+    using Row = std::array<std::size_t, longest_word + most_edits + 1>;
+    Row rows[3];
+    auto &before_last = rows[0], &last = rows[1], &row = rows[2];
     std::iota(last.begin(), last.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
         row[0] = i;
@@ -156,18 +160,36 @@ std::size_t distance(std::string_view a, std::string_view b) {
         std::swap(before_last, last);
         std::swap(last, row);
     }
-    return last.back();
+    return last[b.size()];
+}
+
+/// Which letters it has, small ones for capitals: of two words that differ in so many, at least as
+/// many edits make the one of the other.
+std::uint64_t letters_of(std::string_view word) {
+    std::uint64_t letters = 0;
+    for (const char c : word) letters |= std::uint64_t{1} << (static_cast<unsigned>(lower(c)) & 63);
+    return letters;
+}
+
+int least_edits(std::uint64_t a, std::uint64_t b) {
+    return std::max(std::popcount(a & ~b), std::popcount(b & ~a));
+}
+
+bool begins_with(std::string_view word, std::string_view name) {
+    return word.size() >= name.size() &&
+           std::equal(name.begin(), name.end(), word.begin(),
+                      [](char a, char b) { return lower(a) == lower(b); });
 }
 
 /// `pos` position, and not `master` master_unit.
 bool abbreviates(std::string_view word, std::string_view name) {
     return word.size() >= shortest_abbreviation && word.size() < name.size() &&
-           name.starts_with(word) && name.find('_', word.size()) == std::string_view::npos;
+           begins_with(name, word) && name.find('_', word.size()) == std::string_view::npos;
 }
 
 /// `GearInPosition` is GearInPos, which is most of it.
 bool spells_out(std::string_view word, std::string_view name) {
-    return word.starts_with(name) && 3 * name.size() >= 2 * word.size();
+    return begins_with(word, name) && 3 * name.size() >= 2 * word.size();
 }
 
 /// The length of the longest part of a name: 8 for `a.position`.
@@ -291,19 +313,21 @@ std::vector<std::string> nearest(std::string_view word,
     const std::string wanted = lower(word);
     std::vector<std::string> near;
     for (const std::string& candidate : candidates)
-        if (abbreviates(wanted, lower(candidate))) near.push_back(candidate);
+        if (abbreviates(wanted, candidate)) near.push_back(candidate);
     if (near.size() == 1) return near;
     near.clear();
     for (const std::string& candidate : candidates)
-        if (spells_out(wanted, lower(candidate)) &&
+        if (spells_out(wanted, candidate) &&
             (near.empty() || candidate.size() > near.front().size()))
             near = {candidate};
     const std::vector<std::string> spelled_out = std::exchange(near, {});
-    std::size_t fewest = std::min<std::size_t>(longest_part(word) / 3, 3);
+    std::size_t fewest = std::min(longest_part(word) / 3, most_edits);
+    const std::uint64_t letters = letters_of(wanted);
     for (const std::string& candidate : candidates) {
-        if (std::ranges::find(near, candidate) != near.end()) continue;
         const std::size_t longer = std::max(candidate.size(), word.size());
         if (longer - std::min(candidate.size(), word.size()) > fewest) continue;
+        if (std::cmp_greater(least_edits(letters, letters_of(candidate)), fewest)) continue;
+        if (std::ranges::find(near, candidate) != near.end()) continue;
         const std::size_t edits = distance(wanted, lower(candidate));
         if (edits > fewest || edits >= longer) continue;
         if (edits < fewest) near.clear();

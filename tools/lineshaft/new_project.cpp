@@ -148,9 +148,26 @@ std::string path_from(const std::filesystem::path& file, const std::string& path
         .string();
 }
 
+/// The folder of the solution that a `.plcproj` is of, where its libraries may be; else none.
+std::optional<std::string> solution_of(const std::string& path) {
+    constexpr int most_above = 3;
+    namespace fs = std::filesystem;
+    if (lower(fs::path(path).extension().string()) != ".plcproj") return {};
+    fs::path folder = fs::path(path).parent_path();
+    for (int i = 0; i <= most_above; ++i, folder /= "..") {
+        const fs::path here = folder.empty() ? "." : folder.lexically_normal();
+        std::error_code error;
+        for (const fs::directory_entry& entry : fs::directory_iterator(here, error))
+            if (lower(entry.path().extension().string()) == ".sln") return here.string();
+    }
+    return {};
+}
+
 /// The project of several that has tasks, or that no other is built on.
 std::optional<WholeProject> chosen_project(const std::string& path, Diagnostics& out) {
-    std::vector<WholeProject> all = read_projects(path, {}, out);
+    std::vector<std::string> folders;
+    if (const auto solution = solution_of(path)) folders.push_back(*solution);
+    std::vector<WholeProject> all = read_projects(path, folders, out);
     if (all.size() == 1) return all.front();
     const auto keep_if = [&](auto wanted) {
         std::vector<WholeProject> kept;
@@ -219,9 +236,10 @@ std::string shell_word(const std::string& word) {
 
 std::string include_option(const std::string& project, const std::filesystem::path& program) {
     Diagnostics unread;
-    if (resolve_path(path_from(program, project), program.string(), {}, {}, unread)) return {};
+    const std::string whole = solution_of(project).value_or(project);
+    if (resolve_path(path_from(program, whole), program.string(), {}, {}, unread)) return {};
     std::error_code error;
-    std::filesystem::path folder = std::filesystem::absolute(project).lexically_normal();
+    std::filesystem::path folder = std::filesystem::absolute(whole).lexically_normal();
     if (!std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
     return " --include-dir " + shell_word(folder.string());
 }

@@ -101,6 +101,12 @@ struct Checking {
     std::vector<std::string_view> open_libraries =
         {};  ///< whose names are seen behind all others without theirs
     NameMap<Variable*> globals = {};
+    /// What a name that nobody declares may be meant for: in all blocks, and in one.
+    struct KnownNames {
+        std::size_t count = 0;  ///< of those in all
+        const Routine* routine = nullptr;
+        std::vector<std::string> everywhere = {}, here = {};  ///< sorted
+    } known_names = {};
     /// One of VAR_GLOBAL CONSTANT, and where it stands.
     struct GlobalConstant {
         const DeclarationBlock* block;

@@ -170,8 +170,8 @@ std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::st
     Expression* value = e->arguments[0].value;
     const bool takes_character = !source && (target->is_integer() || target->is_bits());
     if (takes_character && is_literal_character(*value)) coerce(c, value, char_type);
-    const bool is_numbered =
-        value->type->is_pointer() && (target->kind == Kind::text || target->is_real());
+    const bool is_numbered = value->type->is_pointer() &&
+                             (target->kind == Kind::text || target->is_real() || target->is_time());
     if (is_numbered && !coerce(c, value, ulint_type)) return nullptr;
     if (const auto type = take_unconverted(c, e, value, *target)) return *type;
     const Type& from = *value->type;

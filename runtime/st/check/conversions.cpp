@@ -27,6 +27,14 @@ bool are_same_pattern(const Type& given, const Type& to) {
 
 namespace {
 
+bool is_of_codesys(const Dialect& dialect) {
+    return dialect.vendor == Vendor::codesys;
+}
+
+bool is_of_siemens(const Dialect& dialect) {
+    return dialect.vendor == Vendor::siemens;
+}
+
 /// A bit string stands for an integer of its width or a wider one, and the other way.
 bool is_same_pattern(const Type& from, const Type& to) {
     const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
@@ -185,12 +193,18 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
 /// -1 of a BYTE.
 bool wraps(const Type& to, Wide value, const Dialect& dialect) {
     const Wide pattern = Wide{1} << to.bits;
-    const bool is_of_codesys = dialect.vendor == Vendor::codesys;
     if (value < 0)
         return -value <= pattern / 2 && !to.is_signed &&
-               (to.kind == Kind::integer ? dialect.is_loose : is_of_codesys);
-    return is_of_codesys && to.kind == Kind::integer && to.is_signed && value > largest(to) &&
-           value < pattern;
+               (to.kind == Kind::integer ? dialect.is_loose : is_of_codesys(dialect));
+    return is_of_codesys(dialect) && to.kind == Kind::integer && to.is_signed &&
+           value > largest(to) && value < pattern;
+}
+
+/// `timer.PT := 500;` of B&R, whose TIME is a DINT.
+bool counts_ms(const Expression& e, const Type& to) {
+    return to.kind == Kind::time && e.type->kind == Kind::any_integer &&
+           e.constant.integer >= smallest(dint_type) && e.constant.integer <= largest(dint_type) &&
+           e.place.dialect().vendor == Vendor::automation_studio;
 }
 
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
@@ -209,6 +223,7 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
     const bool no_time = to.kind == Kind::time && value == 0;
     if (to.is_any() || bit || no_time) return take_type(c, e, to, e->constant);
+    if (counts_ms(*e, to)) return take_type(c, e, to, {.integer = value * 1'000'000});
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);
     const Wide pattern = Wide{1} << to.bits;
     const bool is_wrapped =
@@ -251,7 +266,7 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
                         e->place.dialect().times_count_ms;
     const Wide given =
         is_cut ? in_whole_ms(e->constant.integer, e->place.dialect()) : e->constant.integer;
-    const bool is_odd = given % 2 != 0, takes_lowest = e->place.dialect().vendor == Vendor::siemens;
+    const bool is_odd = given % 2 != 0, takes_lowest = is_of_siemens(e->place.dialect());
     const Wide value = to.kind == Kind::boolean ? Wide{takes_lowest ? is_odd : given != 0}
                                                 : wrapped(to.plain(), given);
     return become(c, e, to, {.integer = value});
@@ -307,8 +322,7 @@ bool is_literal_character(const Expression& e) {
 }
 
 bool takes_long_numbers(const Expression& e, const Type& from) {
-    return e.place.dialect().vendor == Vendor::codesys && from.kind == Kind::integer &&
-           from.bits == 64;
+    return is_of_codesys(e.place.dialect()) && from.kind == Kind::integer && from.bits == 64;
 }
 
 bool counts_bits(const Type& from, const Type& to, const Place& place) {
@@ -324,7 +338,7 @@ static const Type* count_bits(Checking& c, Expression*& e, const Type& to) {
 
 /// In SCL a DT, an LDT and a DTL become one another.
 static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
-    if (e->place.dialect().vendor != Vendor::siemens) return false;
+    if (!is_of_siemens(e->place.dialect())) return false;
     const bool is_made = e->type->kind == Kind::moment && is_dtl(to),
                is_read = is_dtl(*e->type) && to.kind == Kind::moment;
     if (!is_made && !is_read) return false;
@@ -408,7 +422,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
 
 Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect) {
     constexpr Wide ms = 1'000'000;
-    const bool has_sign = dialect.vendor == Vendor::siemens;
+    const bool has_sign = is_of_siemens(dialect);
     return wrapped(integer_type(32, has_sign), nanoseconds / ms) * ms;
 }
 

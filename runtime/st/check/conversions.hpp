@@ -64,6 +64,9 @@ void become_number(Checking& c, Expression*& e);
 /// MatIEC calls a function of C, whose arguments and result have no more bits than their type.
 void keep_width(Checking& c, Expression*& e);
 
+/// What CODESYS reckons in a register is looked at there, and not kept: it becomes a DINT.
+void look_in_register(Checking& c, Expression*& e);
+
 /// A whole number or a bit string becomes a LINT.
 void become_lint(Checking& c, Expression*& e);
 

@@ -48,6 +48,17 @@ bool coerce_number(Checking& c, Expression*& e, const Type& to) {
     return become(c, e, to, {.integer = value});
 }
 
+/// 65535 of an enumeration is -1 of an INT in CODESYS, which is told.
+static bool has_bits_of(Checking& c, Expression*& e, const Type& to) {
+    const bool is_taken = is_constant(*e) && !e->type->is_strict && to.kind == Kind::integer &&
+                          to.is_signed && e->place.dialect().is_loose &&
+                          e->constant.integer > largest(to) &&
+                          e->constant.integer < Wide{1} << to.bits;
+    if (!is_taken) return false;
+    e = make_constant(c, *e, any_integer_type, e->constant);
+    return coerce(c, e, to);
+}
+
 bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
     const Type& from = *e->type;
     if (from.has_numbers && (to.kind == Kind::integer || to.kind == Kind::bits)) {
@@ -58,7 +69,7 @@ bool coerce_enumeration(Checking& c, Expression*& e, const Type& to) {
                                                 e->constant.integer <= largest(to)
                                           : std::ranges::all_of(from.numbers, holds);
         if (fits) convert(c, e, to);
-        return fits;
+        return fits || has_bits_of(c, e, to);
     }
     const bool is_other = from.has_numbers && from.name != to.name;
     const bool has_number = is_other || from.kind == Kind::bits;

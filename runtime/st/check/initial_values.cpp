@@ -150,6 +150,16 @@ std::vector<Argument> one_by_one(Checking& c, const Expression& list) {
     return values;
 }
 
+/// `20(5(1))` of IEC 61131-3, 6.5.3: what is repeated within it stands there so many times.
+void repeat_within(Checking& c, Expression& repeated) {
+    const auto is_one = [](const Argument& a) { return a.value->kind == E::repeated; };
+    while (std::ranges::any_of(repeated.arguments, is_one)) {
+        std::vector<Argument> all = one_by_one(c, repeated);
+        if (all.empty()) return;
+        repeated.arguments = std::move(all);
+    }
+}
+
 /// CoDeSys 2.3 has the values of an array of arrays one behind the other: here as lists.
 void group_elements(Checking& c, Expression& list, const Type& array) {
     const Type& inner = array.innermost();
@@ -218,6 +228,7 @@ void check_elements(Checking& c, Expression& list, const Type& array) {
             continue;
         }
         Expression* value = argument.value = make_copy(c, *argument.value);
+        if (elements.type().kind != Kind::array) repeat_within(c, *value);
         const auto times = check_whole(c, value->operands[0], lint_type);
         const bool is_number = times && *times >= 0 && *times <= most_elements;
         check_repeated(c, *value, is_number ? *times : 1, elements, count);

@@ -1,5 +1,7 @@
 #include "runtime/st/check/names.hpp"
 
+#include <iterator>
+
 #include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/st/check/classes.hpp"
@@ -115,17 +117,29 @@ Variable* find_in_any_capitals(Checking& c, const Token& token) {
     return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
 }
 
-/// What a name that nobody declares may be meant for.
-std::vector<std::string> visible_names(Checking& c) {
-    std::vector<std::string> names;
+/// What a name that nobody declares may be meant for. It is looked for many times in a block.
+const std::vector<std::string>& visible_names(Checking& c) {
+    Checking::KnownNames& known = c.known_names;
+    const std::size_t count = c.globals.size() + c.users.values.size() + c.users.routines.size();
+    const bool are_new = known.count != count;
+    if (are_new) {
+        known.count = count;
+        known.everywhere.clear();
+        for (const auto& [name, variable] : c.globals) known.everywhere.emplace_back(name);
+        for (const auto& [name, value] : c.users.values) known.everywhere.emplace_back(name);
+        for (const auto& [name, routine] : c.users.routines)
+            if (!routine->type) known.everywhere.emplace_back(name);
+        std::ranges::sort(known.everywhere);
+    }
+    if (!are_new && known.routine == c.routine) return known.here;
+    known.routine = c.routine;
+    std::vector<std::string> own;
     for (const Routine* r = c.routine; r; r = r->owner)
-        for (const Variable* variable : all_variables(*r)) names.emplace_back(variable->text);
-    for (const auto& [name, variable] : c.globals) names.emplace_back(name);
-    for (const auto& [name, value] : c.users.values) names.emplace_back(name);
-    for (const auto& [name, routine] : c.users.routines)
-        if (!routine->type) names.emplace_back(name);
-    std::ranges::sort(names);
-    return names;
+        for (const Variable* variable : all_variables(*r)) own.emplace_back(variable->text);
+    std::ranges::sort(own);
+    known.here.clear();
+    std::ranges::merge(own, known.everywhere, std::back_inserter(known.here));
+    return known.here;
 }
 
 /// A value of an enumeration is written exactly so.
@@ -190,9 +204,14 @@ const Type* undeclared(Checking& c, const Token& name, Place place,
         if (r->has_unknown_base) return nullptr;
     if (c.tree.lost.contains(name.text) || !c.undeclared[c.routine].insert(name.text).second)
         return nullptr;
-    std::vector<std::string> names = visible_names(c);
-    names.insert(names.end(), functions.begin(), functions.end());
-    const auto near = nearest(name.text, names);
+    const auto meant = [&] {
+        if (functions.empty()) return nearest(name.text, visible_names(c));
+        std::vector<std::string> names = visible_names(c);
+        names.insert(names.end(), functions.begin(), functions.end());
+        return nearest(name.text, names);
+    };
+    std::vector<std::string> near = meant();
+    std::erase(near, name.text);
     const bool is_text =
         name.quoted &&
         (!may_be_name(name.text) || (near.empty() && place.dialect().quotes_may_enclose_texts));
@@ -347,6 +366,11 @@ bool is_text_for(Checking& c, const Expression& e, const Type* expected) {
             variable->type->kind != Kind::text);
 }
 
+/// TRUE and FALSE are words of the language; `"TRUE"` may be a tag.
+bool is_truth(const Token& token) {
+    return same_name(token.text, "true") || same_name(token.text, "false");
+}
+
 /// A value that is named without its enumeration. Empty: none is called so.
 std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
     const Token& token = e->token;
@@ -365,6 +389,8 @@ std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
     if (token.word == Word::direct) return check_direct(c, *e);
+    if (!token.quoted && !token.local && is_truth(token))
+        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     const bool is_text = is_text_for(c, *e, expected);
     if (expected && expected->has_values() && !token.local && !is_text) {
         const std::string* value = find_called(expected->values, token.text);
@@ -397,8 +423,7 @@ const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     if (getter) return check_getter(c, e, *getter);
     if (expected && expected->kind == Kind::interface && same_name(token.text, "null"))
         return become(c, e, *expected, {});
-    if (same_name(token.text, "true") || same_name(token.text, "false"))
-        return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
+    if (is_truth(token)) return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     if (const auto type = check_value_alone(c, e)) return *type;
     if (same_name(token.text, "eno") && c.routine && c.routine->pou->kind != PouKind::data_block)
         return use(c, e, eno_of(c, *c.routine));

@@ -150,6 +150,24 @@ const Type* unite(Checking& c, Expression& e, const Type* expected) {
     return coerce(c, left, *common) && coerce(c, right, *common) ? common : nullptr;
 }
 
+/// An operator or ABS has left it there, and a conversion that nobody wrote.
+static bool is_in_register(const Expression& e) {
+    if (e.kind == E::converted) return !e.conversion.is_written && is_in_register(*e.operands[0]);
+    if (e.kind == E::unary) return e.op == Word::minus;
+    if (e.kind == E::call) return e.standard && same_name(e.standard->name, "abs");
+    if (e.kind != E::binary) return false;
+    const bool is_logic = e.op == Word::and_ || e.op == Word::or_ || e.op == Word::xor_;
+    return !is_logic || is_in_register(*e.operands[0]) || is_in_register(*e.operands[1]);
+}
+
+void look_in_register(Checking& c, Expression*& e) {
+    const Type& type = e->type->plain();
+    const bool is_narrow =
+        (type.kind == Kind::integer || type.kind == Kind::bits) && type.bits < 32;
+    if (is_narrow && e->place.dialect().reckons_in_registers && is_in_register(*e))
+        convert(c, e, dint_type);
+}
+
 void keep_width(Checking& c, Expression*& e) {
     const bool is_reckoned = e->kind == E::unary || e->kind == E::binary;
     const bool is_whole =

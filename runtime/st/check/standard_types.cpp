@@ -286,6 +286,7 @@ const Type* check_chosen(Checking& c, Expression*& e, const Type* expected) {
                    : nullptr;
     become_number(c, choice);
     if (choice->type->is_any() && !coerce(c, choice, lint_type)) return nullptr;
+    look_in_register(c, choice);
     if (choice->type->kind != Kind::integer)
         return c.fail(code::type_does_not_fit, choice->place, "K of MUX is a whole number");
     const Type* type = unite_from(c, call, 1, expected);

@@ -165,6 +165,10 @@ void check_case(Checking& c, Statement*& slot) {
         return rewrite_case_of_texts(c, slot);
     Statement& s = *slot;
     if (type) type = select_by_numbers(c, s, *type);
+    if (type) {
+        look_in_register(c, s.value);
+        type = s.value->type;
+    }
     if (type && type->kind == Kind::any_integer)
         type = coerce(c, s.value, lint_type) ? &lint_type : nullptr;
     const bool fits =
@@ -423,6 +427,21 @@ static bool is_given_whole(Checking& c, Expression*& given, const Type& block) {
     return derives && become_base(c, given, block);
 }
 
+/// What the attributes 'no_assign' and 'no_assign_warning' say of its block.
+static bool may_be_assigned(Checking& c, const Statement& s) {
+    const Routine* block = s.target->type->routine;
+    const Copying copying = block ? block->pou->copying : Copying::allowed;
+    if (copying == Copying::allowed) return true;
+    const std::string said = fmt::format("an instance of {} is assigned as a whole", block->name);
+    const char* const help = "what it refers to would be that of both";
+    if (copying == Copying::refused)
+        return c.fail(code::cannot_be_assigned, s.place,
+                      said + ", which the attribute 'no_assign' refuses", help);
+    c.warn(code::cannot_be_assigned, s.place,
+           said + ", of which the attribute 'no_assign_warning' warns", help);
+    return true;
+}
+
 /// What an instance begins with is there before it is copied, and is not made anew in the copy.
 static void begin_both(Checking& c, Statement*& s) {
     Block all;
@@ -461,7 +480,7 @@ void check_assignment(Checking& c, Statement*& s) {
         return void(s = make_sequence(c, s->place, {}));
     if (refuse_copy_of_command(c, s->place, *type)) return;
     if (type->is_instance() && s->op == Word::assign && is_given_whole(c, s->value, *type))
-        return begin_both(c, s);
+        return may_be_assigned(c, *s) ? begin_both(c, s) : void();
     if (type->is_instance())
         return void(c.fail(code::cannot_be_assigned, s->place,
                            "an instance is not assigned as a whole",

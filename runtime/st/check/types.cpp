@@ -255,12 +255,16 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
 const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
-    const bool is_whole =
-        base->kind == Kind::integer || (base->kind == Kind::bits && text.place.dialect().is_loose);
-    if (!is_whole)
+    const bool are_bits =
+        base->kind == Kind::bits && text.place.dialect().vendor != Vendor::siemens;
+    if (base->kind != Kind::integer && !are_bits)
         return c.fail(code::type_does_not_fit, text.place,
                       fmt::format("{} has no subranges", describe(*base)),
                       "a subrange is one of an integer type");
+    if (are_bits && !text.place.dialect().is_loose)
+        c.warn(code::type_does_not_fit, text.place,
+               fmt::format("{} has no subranges in IEC 61131-3", describe(*base)),
+               fmt::format("write {}, which has them", integer_type(base->bits, false).name));
     Expression *from = text.ranges.front().first, *to = text.ranges.front().second;
     const auto lower = check_whole(c, from, *base), upper = check_whole(c, to, *base);
     if (!lower || !upper) return nullptr;
@@ -361,6 +365,11 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
 
+/// `axis` of the catalogue is a block of the program; AXIS of a vendor's project is another type.
+static bool is_of_catalog_alone(const Type& type, const Token& name) {
+    return type.is_object() && name.place.dialect().vendor != Vendor::none;
+}
+
 const Type* resolve_name(Checking& c, const Token& name) {
     if (c.is_lost(name)) return nullptr;
     if (const Type* type = find_elementary(name.text); type && !name.quoted)
@@ -390,7 +399,8 @@ const Type* resolve_name(Checking& c, const Token& name) {
         if (routine && routine->type) return routine->type;
     }
     const std::string_view bare = without_library(name.text);
-    if (const Type* type = standard_type(c, bare, name.place.dialect().vendor)) {
+    if (const Type* type = standard_type(c, bare, name.place.dialect().vendor);
+        type && !is_of_catalog_alone(*type, name)) {
         c.note(name.place, *type);
         return type;
     }
@@ -407,13 +417,11 @@ const Type* resolve_name(Checking& c, const Token& name) {
     for (const auto& [known, type] : c.users.types) names.emplace_back(known);
     for (const auto& [known, routine] : c.users.routines)
         if (routine->type) names.emplace_back(known);
-    for (const BlockType& kind : c.catalog.types()) names.emplace_back(kind.name);
-    std::ranges::sort(names);
-    auto near = nearest(name.text, names);
-    if (near.empty() && c.may_be_foreign(name)) return nullptr;
     for (const BlockType& kind : c.catalog.types())
-        if (!kind.handle.empty())
-            std::ranges::replace(near, std::string(kind.name), std::string(kind.handle));
+        names.emplace_back(kind.handle.empty() ? kind.name : kind.handle);
+    std::ranges::sort(names);
+    const auto near = nearest(name.text, names);
+    if (near.empty() && c.may_be_foreign(name)) return nullptr;
     return c.fail(
         code::not_declared, name.place, fmt::format("'{}' is not a type", name.text),
         near.empty() ? "declare it with TYPE, or as a FUNCTION_BLOCK" : suggest(name.text, near));

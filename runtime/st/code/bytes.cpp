@@ -24,6 +24,17 @@ void set_slot(std::byte* slots, std::uint64_t value) {
     std::memcpy(slots, &value, sizeof value);
 }
 
+std::uint64_t scalar_value(const Shape& shape, const std::byte* slots) {
+    return shape.byte ? std::to_integer<std::uint64_t>(slots[*shape.byte]) : slot_value(slots);
+}
+
+void set_scalar(const Shape& shape, std::byte* slots, std::uint64_t value) {
+    if (shape.byte)
+        slots[*shape.byte] = static_cast<std::byte>(value);
+    else
+        set_slot(slots, value);
+}
+
 /// A scalar, a text, a UNION, or what is not seen by bytes: `whole`.
 struct Leaf {
     std::uint32_t number = 0;  ///< of its shape
@@ -81,7 +92,7 @@ std::byte byte_of_text(const Shape& shape, const std::byte* slots, std::uint64_t
     const std::uint64_t length = slot_value(slots), room = shape.type->length;
     if (shape.is_s7 && at < 2) return static_cast<std::byte>(at == 0 ? room : length);
     if (shape.is_s7) at -= 2;
-    return at == length || at >= room ? std::byte{0} : slots[8 + at];
+    return (at == length && at < room) || at > room ? std::byte{0} : slots[8 + at];
 }
 
 /// Where another text begins at `first`, too: the first 0 ends it.
@@ -93,7 +104,8 @@ void set_units(const Shape& shape, std::byte* slots, std::uint64_t first, std::u
     set_memory_of_units(slots, memory);
 }
 
-/// A text ends with its first 0, or with its room; on an S7 where it says.
+/// A text ends with its first 0, or with its room, behind which there is a byte more; on an S7
+/// where it says.
 void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::uint64_t count,
               const std::byte* from) {
     if (shape.type->is_wide) return set_units(shape, slots, first, count, from);
@@ -103,7 +115,7 @@ void set_text(const Shape& shape, std::byte* slots, std::uint64_t first, std::ui
         const std::uint64_t place = shape.is_s7 ? at - 2 : at;
         if (shape.is_s7 && at == 1)
             set_slot(slots, std::min(std::to_integer<std::uint64_t>(*from), room));
-        if (place < room) slots[8 + place] = *from;
+        if (place <= room) slots[8 + place] = *from;
     }
     if (shape.is_s7) return;
     const std::byte* end = std::find(slots + 8, slots + 8 + room, std::byte{0});
@@ -122,7 +134,8 @@ Fault read_leaf(const Code& code, const Leaf& leaf, std::uint64_t first, std::ui
     const Shape& shape = code.shapes[leaf.number];
     switch (shape.kind) {
         case Shape::Kind::scalar:
-            std::memcpy(to, bytes_of_scalar(shape, slot_value(leaf.slots)).data() + first, count);
+            std::memcpy(to, bytes_of_scalar(shape, scalar_value(shape, leaf.slots)).data() + first,
+                        count);
             return Fault::none;
         case Shape::Kind::text:
             for (std::uint64_t i = 0; i < count; ++i)
@@ -141,11 +154,11 @@ Fault write_leaf(const Code& code, const Leaf& leaf, std::uint64_t first, std::u
                  const std::byte* from) {
     const Shape& shape = code.shapes[leaf.number];
     if (shape.kind == Shape::Kind::scalar) {
-        Scalar bytes = bytes_of_scalar(shape, slot_value(leaf.slots));
+        Scalar bytes = bytes_of_scalar(shape, scalar_value(shape, leaf.slots));
         std::memcpy(bytes.data() + first, from, count);
         const std::uint64_t value = load_packed(bytes.data(), 0, shape.format);
         if (!is_value(*shape.type, value)) return Fault::out_of_range;
-        set_slot(leaf.slots, value);
+        set_scalar(shape, leaf.slots, value);
     } else if (shape.kind == Shape::Kind::text) {
         set_text(shape, leaf.slots, first, count, from);
     } else if (shape.kind == Shape::Kind::raw) {
@@ -239,9 +252,9 @@ const std::byte* same_value(const Code& code, const Run& run, std::uint64_t firs
                             std::uint64_t count, const Bytes& other, std::uint64_t byte) {
     if (!run.leaf || run.first != first || run.end - run.first != count) return nullptr;
     const auto found = leaf_at(code, other, 8 * byte);
-    if (!found || found->bit != 8 * byte || found->number != run.leaf->number ||
-        is_bit(code.shapes[found->number]))
-        return nullptr;
+    if (!found || found->bit != 8 * byte || found->number != run.leaf->number) return nullptr;
+    const Shape& shape = code.shapes[found->number];
+    if (is_bit(shape) || shape.byte) return nullptr;
     return found->slots;
 }
 
@@ -269,7 +282,7 @@ bool make_standard_zero(const Type& type, std::byte* slots) {
     for (const Variable* member : type.members) {
         if (member->section != Section::input || !member->type->is_scalar()) continue;
         if (member->is_byte)
-            slots[8 * member->slot + member->byte] = std::byte{0};
+            slots[member->byte] = std::byte{0};
         else if (member->type->kind != Type::Kind::handle)
             set_slot(slots + 8 * member->slot, 0);
     }

@@ -240,6 +240,8 @@ bool set_byte_of_text(std::byte* text, std::int64_t place, std::uint64_t value, 
 
 /// The first place, counted from 1, or 0.
 std::uint64_t find_text(const std::byte* in, const std::byte* what, bool in_units);
+/// MatIEC's goes on behind what differs: it does not find 'ab' in 'aab'.
+std::uint64_t matiec_find_text(const std::byte* in, const std::byte* what);
 
 /// `has_sign`: '+42'.
 template <class T>
@@ -270,6 +272,12 @@ T number_of_text(const std::byte* from, bool has_groups);
 /// whole number that its type (of `bits`) does not hold is 0.
 std::uint64_t s7_integer_of_text(const std::byte* from, std::uint64_t bits, bool is_signed);
 double s7_real_of_text(const std::byte* from);
+
+/// As MatIEC's C library reads it: a whole number from its last digit on, whose sign is the first
+/// character; what is no digit is passed over, of what is not below '.' that behind it; of a time
+/// the seconds before a point. A real number with a point as in C, without one as a whole number.
+std::uint64_t matiec_integer_of_text(const std::byte* from, bool is_time);
+double matiec_real_of_text(const std::byte* from);
 
 /// 1 of 'TRUE' in any letters and of '1'; `is_strict`: of what begins with 'TRUE' or 'true', behind
 /// blanks, too, as CODESYS has it.

@@ -192,6 +192,7 @@
     OP(set_text_byte, text, "rrrr", if (!set_byte_of_text(target(U(b)), I(c), U(a), TextRoom::of_number(U(d)))) FAIL(array_bounds)) \
     OP(set_character, text, "rrrr", if (!set_character(target(U(b)), I(c), U(a), TextRoom::of_number(U(d)))) FAIL(array_bounds)) \
     OP(text_find, text, "wrrn", put(a, find_text(target(U(b)), target(U(c)), d != 0)))               \
+    OP(matiec_text_find, text, "wrr-", put(a, matiec_find_text(target(U(b)), target(U(c)))))         \
     OP(text_of_signed, text, "rrn-", write_number(target(U(a)), I(b), c != 0))                       \
     OP(text_of_unsigned, text, "rrn-", write_number(target(U(a)), U(b), c != 0))                     \
     OP(text_of_real, text, "rrn-", write_real(target(U(a)), R(b), real_form(c)))                     \
@@ -200,6 +201,8 @@
     OP(real_of_text, text, "wrn-", put(a, number_of_text<double>(target(U(b)), c != 0)))             \
     OP(s7_integer_of_text, text, "wrnn", put(a, s7_integer_of_text(target(U(b)), c, d != 0)))         \
     OP(s7_real_of_text, text, "wr--", put(a, s7_real_of_text(target(U(b)))))                         \
+    OP(matiec_integer_of_text, text, "wrn-", put(a, matiec_integer_of_text(target(U(b)), c != 0)))   \
+    OP(matiec_real_of_text, text, "wr--", put(a, matiec_real_of_text(target(U(b)))))                 \
     OP(text_of_truth, text, "rr--", write_truth(target(U(a)), U(b) != 0))                          \
     OP(text_of_time, text, "rrn-", write_time(target(U(a)), c, I(b)))                               \
     OP(text_of_bits, text, "rr--", write_bits(target(U(a)), U(b)))                                   \

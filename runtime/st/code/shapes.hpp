@@ -25,6 +25,7 @@ struct Shape {
     Kind kind = Kind::whole;
     bool is_s7 = false;  ///< as SCL's dialect has it, not as Structured Text's
     PackedFormat format = {};
+    std::optional<std::uint8_t> byte = {};  ///< of its slot, that a boolean of a standard block is
     std::uint64_t bits = 0, slots = 0;
     std::uint64_t stride = 0;   ///< of an array: bits from an element to the next one
     std::uint32_t element = 0;  ///< its elements' shape

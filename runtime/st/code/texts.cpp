@@ -14,6 +14,7 @@ bool copy_text(std::byte* to, const std::byte* from, TextRoom room) {
     const std::uint64_t whole = word(from, 0), length = kept_bytes(text_at(from), room);
     std::memmove(to + 8, from + 8, length);
     set_word(to, 0, length);
+    if (length == room.most() && !room.counts_units()) set_byte(to + 8, length, 0);
     return length == whole;
 }
 
@@ -91,6 +92,7 @@ static bool set_or_append(std::byte* text, std::int64_t place, std::uint64_t val
     if (room.counts_units()) return set_unit(text, at, value, room.most());
     set_byte(text + 8, at, value);
     if (at == length) set_word(text, 0, length + 1);
+    if (at == length && at + 1 == room.most()) set_byte(text + 8, at + 1, 0);
     return true;
 }
 

@@ -19,10 +19,19 @@ Slot emit_fraction(Emission& e) {
     return e.result(Op::sub_lreal, a, e.emit(Op::truncate, a));
 }
 
+/// MatIEC's is a cast in C, which an x86-64 does by 32 or, for an UDINT and more, by 64 bits.
+Slot cast(Emission& e, Slot whole) {
+    const bool is_long = e.type().bits == 64 || (e.type().bits == 32 && !e.type().is_signed);
+    return e.result(of_type(Op::wrap_sint, e.type()),
+                    e.emit(is_long ? Op::left_in_64 : Op::truncated_in_32, whole));
+}
+
 Slot emit_whole(Emission& e) {
     const Slot whole = e.emit(e.call.standard->op, e.value(0));
     const Place& place = e.call.place;
     const Dialect& dialect = place.dialect();
+    if (dialect.vendor == Vendor::matiec && e.call.standard->op == Op::truncate)
+        return cast(e, whole);
     if (dialect.beyond_type == BeyondType::fault || place.source->is_prelude())
         return e.result(of_type(Op::round_sint, e.type()), whole);
     if (dialect.beyond_type == BeyondType::lowest_bits)

@@ -6,6 +6,18 @@ namespace lineshaft::st {
 
 namespace {
 
+Vendor vendor_of(const Emission& e) {
+    return e.call.place.dialect().vendor;
+}
+
+bool is_of_codesys(const Emission& e) {
+    return vendor_of(e) == Vendor::codesys;
+}
+
+bool is_of_matiec(const Emission& e) {
+    return vendor_of(e) == Vendor::matiec;
+}
+
 /// A text that is put together from parts of others. What is given is computed before it begins.
 struct Parts {
     explicit Parts(Emission& emission) : e(emission) {}
@@ -29,8 +41,7 @@ struct Parts {
     }
 
     Emission& e;
-    const Vendor vendor = e.call.place.dialect().vendor;
-    const bool is_siemens = vendor == Vendor::siemens, is_codesys = vendor == Vendor::codesys;
+    const bool is_siemens = vendor_of(e) == Vendor::siemens, is_codesys = is_of_codesys(e);
     Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30), most = all;
     Slot in = e.text(0);
     Slot made = 0;
@@ -39,8 +50,7 @@ struct Parts {
 /// CODESYS: what is given to LEN is a STRING(255).
 Slot emit_length(Emission& e) {
     const Slot text = e.text(0);
-    if (e.call.place.dialect().vendor != Vendor::codesys)
-        return e.result(Op::text_length, text, e.is_wide());
+    if (!is_of_codesys(e)) return e.result(Op::text_length, text, e.is_wide());
     const Slot length = e.emit(Op::text_length, text, e.is_wide());
     return e.result(Op::min_signed, length, e.constant(255));
 }
@@ -124,14 +134,15 @@ Slot emit_replace(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), count = e.value(2);
     const Slot before = parts.difference(e.value(3), parts.one);
-    const Slot taken =
-        parts.vendor == Vendor::matiec ? count : taken_by_codesys(parts, before, Op::lt_signed);
+    const Slot taken = is_of_matiec(e) ? count : taken_by_codesys(parts, before, Op::lt_signed);
     return emit_replaced(parts, other, before, count, taken);
 }
 
 Slot emit_find(Emission& e) {
     const Slot in = e.text(0);
-    const Slot what = e.text(1), found = e.wanted_slot();
+    const Slot what = e.text(1);
+    if (is_of_matiec(e) && !e.is_wide()) return e.result(Op::matiec_text_find, in, what);
+    const Slot found = e.wanted_slot();
     e.put(Op::text_find, found, in, what, e.is_wide());
     return found;
 }
@@ -146,7 +157,7 @@ constexpr StandardFunction texts[] = {
      emit_length},
     {"MAX_LEN(IN: STRING): INT", "how many characters the variable can hold", Typing::capacity,
      [](Emission& e) { return e.capacity(0); }},
-    {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not",
+    {"FIND(IN1, IN2: STRING): INT", "where IN2 begins in IN1 for the first time, from 1 on; 0 if it does not; MatIEC goes on behind what differs, and does not find 'ab' in 'aab'",
      Typing::texts, emit_find},
     {"CONCAT(IN1, IN2, ...: STRING): STRING", "the texts one behind the other", Typing::texts, emit_concatenate},
     {"LEFT(IN: STRING; L: ANY_INT): STRING", "the first L characters", Typing::texts, emit_left},

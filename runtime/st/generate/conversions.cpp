@@ -31,8 +31,31 @@ Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
     return truncates ? Op::truncated_in_32 : Op::left_in_32;
 }
 
+bool is_of_codesys(const Dialect& dialect) {
+    return dialect.vendor == Vendor::codesys;
+}
+
+/// MatIEC's C library.
+bool is_of_c(const Expression& e) {
+    return e.place.dialect().vendor == Vendor::matiec;
+}
+
+/// TwinCAT stops where a register does not hold the number, and else keeps as many bits of it.
+bool keeps_bits_of_register(const Source* source) {
+    return source && is_of_codesys(source->dialect) &&
+           source->dialect.beyond_type == BeyondType::fault && !source->is_prelude();
+}
+
+Slot kept_of_register(Writing& w, Slot slot, const Type& to, Slot wanted) {
+    if (to.bits == 64) return w.emit(to.is_signed ? Op::round_lint : Op::left_in_64, wanted, slot);
+    const bool is_long = to.bits == 32 && !to.is_signed;
+    const Slot whole = w.emit(is_long ? Op::round_lint : Op::round_dint, none, slot);
+    return w.emit(of_type(Op::wrap_sint, to), wanted, whole);
+}
+
 Slot nearest(Writing& w, Slot slot, const Type& to, bool truncates, Slot wanted) {
     const auto* source = w.place.source;
+    if (keeps_bits_of_register(source)) return kept_of_register(w, slot, to, wanted);
     const bool are_left =
         source && source->dialect.beyond_type != BeyondType::fault && !source->is_prelude();
     if (!are_left) return w.emit(of_type(Op::round_sint, to), wanted, slot);
@@ -99,12 +122,16 @@ Slot convert_counted(Writing& w, Slot slot, const Type& to, Unit counted, Slot w
 Slot convert_real_time(Writing& w, Slot slot, const Type& from, const Type& to, Unit counted,
                        Slot wanted) {
     const Slot unit = w.constant_slot(lreal_type, {.real = static_cast<double>(counted)});
-    if (to.is_time())
-        return w.emit(of_type(Op::round_sint, to), wanted, w.emit(Op::mul_lreal, none, slot, unit));
+    if (to.is_time()) return nearest(w, w.emit(Op::mul_lreal, none, slot, unit), to, false, wanted);
     const Slot real =
         w.emit(from.is_unsigned_64() ? Op::lreal_from_unsigned : Op::lreal_from_signed, none, slot);
     const Slot count = w.emit(Op::div_lreal, wanted, real, unit);
     return to.bits == 32 ? w.emit(Op::narrow, wanted, count) : count;
+}
+
+/// Where a DATE has 32 bits, of s.
+bool is_of_br(const Place& place) {
+    return place.source && place.dialect().vendor == Vendor::automation_studio;
 }
 
 /// A time is in ns as an integer of 64 bits, but in dialects that count those as all others.
@@ -112,7 +139,7 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
     if (number.is_real()) return convert_real_time(w, slot, from, to, unit_of(time), wanted);
-    const bool in_days = time.kind == Kind::date && number.bits == 16;
+    const bool in_days = time.kind == Kind::date && number.bits == 16 && !is_of_br(w.place);
     return number.bits == 64
                ? slot
                : convert_counted(w, slot, to, in_days ? of_days : unit_of(time), wanted);
@@ -121,8 +148,7 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 /// MatIEC counts all times in seconds.
 bool is_of_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
-    return e.place.dialect().vendor == Vendor::matiec && from.is_time() != to.is_time() &&
-           to.kind != Kind::boolean;
+    return is_of_c(e) && from.is_time() != to.is_time() && to.kind != Kind::boolean;
 }
 
 Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
@@ -135,8 +161,7 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
 bool is_cut_by_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const bool is_whole = to.is_integer() || (to.is_bits() && to.bits != from.bits);
-    return e.place.dialect().vendor == Vendor::matiec && from.is_real() && is_whole &&
-           !e.conversion.truncates;
+    return is_of_c(e) && from.is_real() && is_whole && !e.conversion.truncates;
 }
 
 Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
@@ -216,8 +241,19 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
     return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
 }
 
+/// MatIEC keeps only as many digits as there is room for, and has 0 of what has others than those
+/// of numbers.
+Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
+    if (!e.type->is_bits())
+        return w.emit(Op::mul_ulint, none, from, w.emit(Op::is_bcd, none, from));
+    std::uint64_t beyond = 1;
+    for (int digit = 0; digit < e.type->bits / 4; ++digit) beyond *= 10;
+    return w.emit(Op::mod_ulint, none, from, w.constant_slot(beyond));
+}
+
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
-    const Slot from = value(w, *e.operands[0]);
+    Slot from = value(w, *e.operands[0]);
+    if (is_of_c(e)) from = suited_to_matiec(w, e, from);
     if (e.type->is_bits())
         return w.emit(Op::to_bcd, wanted, from, static_cast<Slot>(e.type->bits / 4));
     return w.emit(of_type(Op::wrap_sint, *e.type), wanted, w.emit(Op::from_bcd, none, from));
@@ -257,6 +293,43 @@ static Slot s7_integer_of(Writing& w, Slot text, const Type& type, Slot wanted) 
     return to;
 }
 
+/// As MatIEC's C library has it: of a time seconds.
+static Slot matiec_number_of_text(Writing& w, Slot text, const Type& type, Slot wanted) {
+    if (type.is_real()) {
+        const Slot real = w.emit(Op::matiec_real_of_text, none, text);
+        return type.bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
+    }
+    const Slot whole = w.emit(Op::matiec_integer_of_text, none, text, type.is_time());
+    if (type.is_time()) return convert_counted(w, whole, type, of_seconds, wanted);
+    return w.emit(of_type(Op::wrap_sint, type), wanted, whole);
+}
+
+static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
+    const bool is_codesys = is_of_codesys(e.place.dialect());
+    const Slot groups = is_codesys || e.place.dialect().vendor == Vendor::none ? 1 : 0;
+    const bool is_s7 = is_of_s7(e);
+    if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
+    if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, is_codesys);
+    if (e.type->is_character) {
+        const Slot to = w.result(wanted);
+        w.put(Op::text_character, to, text, w.constant_slot(1),
+              TextRoom(1, e.type->bits == 16).number());
+        return to;
+    }
+    if (is_of_c(e)) return matiec_number_of_text(w, text, e.type->plain(), wanted);
+    if (e.type->kind == Kind::real) {
+        const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
+                                : w.emit(Op::real_of_text, none, text, groups);
+        return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
+    }
+    if (e.type->is_time()) {
+        const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
+        return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
+    }
+    return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
+                  w.emit(Op::integer_of_text, none, text, groups));
+}
+
 Slot converted(Writing& w, const Expression& e, Slot wanted) {
     const Expression& operand = *e.operands[0];
     if (e.type->kind == Kind::handle)
@@ -268,33 +341,7 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
     }
     if (operand.type->is_reference())
         return convert(w, address_number(w, operand), lint_type, *e.type, false, wanted);
-    if (operand.type->kind == Kind::text) {
-        const Slot text = text_address(w, operand);
-        const Vendor vendor = e.place.dialect().vendor;
-        const bool is_codesys = vendor == Vendor::codesys;
-        const Slot groups = is_codesys || vendor == Vendor::none ? 1 : 0;
-        const bool is_s7 = is_of_s7(e);
-        if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
-        if (e.type->kind == Kind::real) {
-            const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
-                                    : w.emit(Op::real_of_text, none, text, groups);
-            return e.type->bits == 32 ? w.emit(Op::narrow, wanted, real) : real;
-        }
-        if (e.type->kind == Kind::boolean)
-            return w.emit(Op::truth_of_text, wanted, text, is_codesys);
-        if (e.type->is_time()) {
-            const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
-            return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
-        }
-        if (e.type->is_character) {
-            const Slot to = w.result(wanted);
-            w.put(Op::text_character, to, text, w.constant_slot(1),
-                  TextRoom(1, e.type->bits == 16).number());
-            return to;
-        }
-        return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
-                      w.emit(Op::integer_of_text, none, text, groups));
-    }
+    if (operand.type->kind == Kind::text) return of_text(w, e, text_address(w, operand), wanted);
     if (e.conversion.is_bcd) return convert_bcd(w, e, wanted);
     if (!e.conversion.is_written && is_wide(w, operand) &&
         (e.type->is_number() || e.type->is_bits()))

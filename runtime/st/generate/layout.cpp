@@ -135,7 +135,7 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
     if (type.kind == Kind::block) return type.routine->frame;
     if (type.slots != 0) return type.slots;
     std::uint64_t slots = 0;
-    if (type.kind == Kind::text) slots = 1 + (type.text_bytes() + 7U) / 8;
+    if (type.kind == Kind::text) slots = type.text_slots();
     if (type.kind == Kind::array) slots = type.count() * slots_of(w, *type.element);
     if (type.kind == Kind::structure)
         for (Variable* member : type.members) {

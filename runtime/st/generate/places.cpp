@@ -59,6 +59,7 @@ Location locate(Writing& w, const Expression& e) {
         if (whole.kind == Kind::union_ && !of.packed) of = as_packed(w, of, whole);
         return of.packed ? packed_member(of, *e.variable) : part(w, of, *e.variable);
     }
+    if (is_element_of_target(e)) return locate_element_of_target(w, e);
     if (e.kind == E::index) {
         const Location of = locate(w, *e.operands[0]);
         return of.packed ? packed_element(w, of, e) : element(w, of, e);

@@ -69,6 +69,10 @@ Slot reference(Writing& w, const Expression& e);
 Slot reference_to(Writing& w, const Expression& place);
 /// What `e^` is.
 Location locate_target(Writing& w, const Expression& e);
+/// `e` is an element of an array that a reference is to and that is not seen by bytes.
+bool is_element_of_target(const Expression& e);
+/// There may be fewer elements of that array than its type says.
+Location locate_element_of_target(Writing& w, const Expression& e);
 /// -1, 0 or 1: two references are equal, or the one is before the other.
 Slot compare_references(Writing& w, const Expression& e);
 /// `p - q`, in bytes.

@@ -86,11 +86,21 @@ ByteOfPiece piece_of(Writing& w, const Type& own) {
                     [&] { return Piece{.name = "THIS", .shape = shape_number(w, own)}; });
 }
 
+/// A boolean of a standard block is a byte of its slot.
+std::uint32_t shape_of(Writing& w, const Variable& variable) {
+    if (!variable.is_byte) return shape_number(w, *variable.type);
+    const auto byte = static_cast<std::uint8_t>(variable.byte % 8);
+    const auto it = std::ranges::find(w.code.shapes, byte, &Shape::byte);
+    if (it != w.code.shapes.end()) return static_cast<std::uint32_t>(it - w.code.shapes.begin());
+    w.code.shapes.push_back({.type = variable.type, .byte = byte});
+    return static_cast<std::uint32_t>(w.code.shapes.size() - 1);
+}
+
 ByteOfPiece piece_of(Writing& w, const Variable& variable) {
     const Routine* routine = w.routine;
     if (routine->owner && variable.of != routine->pou) routine = routine->owner;
     return piece_of(w, w.pieces, &variable, [&] {
-        Piece piece{.name = std::string(variable.text), .shape = shape_number(w, *variable.type)};
+        Piece piece{.name = std::string(variable.text), .shape = shape_of(w, variable)};
         if (!variable.ends_with_call()) return piece;
         piece.name = fmt::format("{}.{}", routine->name, variable.text);
         piece.ends = true;
@@ -126,7 +136,8 @@ Slot refer_to_image(Writing& w, const Variable& variable) {
 Slot refer_to_variable(Writing& w, const Expression& root) {
     const Variable* variable = root.variable;
     if (is_in_image(variable)) return refer_to_image(w, *variable);
-    const Slot address = address_of(w, locate(w, root));
+    const Location at = locate(w, root);
+    const Slot address = address_of(w, at.byte ? behind(at, *at.byte / 8) : at);
     const Slot made = w.new_temporary(reference_slots);
     w.put(Op::lasting, made, address);
     const ByteOfPiece to = variable ? piece_of(w, *variable) : piece_of(w, *root.type);
@@ -332,6 +343,44 @@ Location locate_target(Writing& w, const Expression& e) {
     return {Mode::address, 0, w.emit(Op::reach, none, from, shape_number(w, *e.type))};
 }
 
+bool is_element_of_target(const Expression& e) {
+    if (e.kind != E::index || e.operands[0]->kind != E::deref) return false;
+    const Expression& array = *e.operands[0];
+    return array.type->kind == Kind::array && !has_bytes(*array.type) &&
+           array.operands[0]->kind != E::refer;
+}
+
+Location locate_element_of_target(Writing& w, const Expression& e) {
+    const Expression& array = *e.operands[0];
+    const bool calls = std::ranges::any_of(
+        e.arguments, [](const Argument& index) { return has_call(*index.value); });
+    Slot at = reference(w, *array.operands[0]);
+    if (calls) at = copied(w, {Mode::slot, at});
+    std::uint64_t first = 0;
+    Slot bytes = none;
+    const Type* type = array.type;
+    for (const Argument& argument : e.arguments) {
+        const std::uint64_t stride = bytes_of(*type->element);
+        const Expression& number = *argument.value;
+        if (number.kind == E::constant) {
+            first += static_cast<std::uint64_t>(number.constant.integer - type->lower) * stride;
+        } else {
+            const IndexTable made{type->lower, type->count(), stride};
+            const Slot more = w.emit(Op::index, none, looked_at(w, number), w.table(made));
+            bytes = bytes == none ? more : w.emit(Op::add_lint, none, bytes, more);
+        }
+        type = type->element;
+    }
+    if (bytes == none)
+        bytes = w.constant_slot(first);
+    else if (first != 0)
+        bytes = w.emit(Op::add_lint, none, bytes, w.constant_slot(first));
+    if (!is_growing(w, *e.type)) slots_of(w, *e.type);
+    const Slot element = w.new_temporary(reference_slots);
+    w.put(Op::move_reference, element, at, bytes);
+    return {Mode::address, 0, w.emit(Op::reach, none, element, shape_number(w, *e.type))};
+}
+
 Slot compare_references(Writing& w, const Expression& e) {
     const auto [a, b] = operands(w, e);
     return w.emit(Op::compare_references, none, a, b);
@@ -350,9 +399,11 @@ Slot address_number(Writing& w, const Expression& e) {
     return made;
 }
 
+/// TIME and LTIME are alike but for their bytes.
 std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7) {
     const auto is_same = [&](const Shape& shape) {
-        return shape.is_s7 == is_s7 && same_type(*shape.type, type);
+        return shape.is_s7 == is_s7 && !shape.byte && same_type(*shape.type, type) &&
+               bytes_of(*shape.type) == bytes_of(type);
     };
     const auto it = std::ranges::find_if(w.code.shapes, is_same);
     const auto number = static_cast<std::uint32_t>(it - w.code.shapes.begin());

@@ -40,6 +40,7 @@ meaning::RealForm form_of_reals(const Dialect& dialect) {
 }
 
 TimeForm form_of_time(const Type& type, Vendor vendor) {
+    if (!type.counts_ns && vendor == Vendor::matiec) return TimeForm::of_matiec;
     if (!type.counts_ns || vendor == Vendor::siemens) return TimeForm::plain;
     return vendor == Vendor::codesys ? TimeForm::of_long_in_codesys : TimeForm::of_long;
 }

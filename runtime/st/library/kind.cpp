@@ -298,7 +298,7 @@ bool is_value(const Type& type, const std::byte* place) {
 }
 
 std::size_t slots_of(const Type& type) {
-    return type.kind == Kind::text ? 1 + (type.text_bytes() + 7U) / 8 : type.slots;
+    return type.kind == Kind::text ? type.text_slots() : type.slots;
 }
 
 std::size_t element_slots(const Type& array) {

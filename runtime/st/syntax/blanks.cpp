@@ -106,7 +106,7 @@ void skip_part(TextCursor& in, bool may_choose) {
 void obey(TextCursor& in, Place pragma) {
     const std::string_view text = pragma.text();
     note_definition(text, in.defined);
-    if (says_pragma(text, "if")) {
+    if (begins_choice(text)) {
         in.choices.push_back(pragma);
         if (!holds(text, in.defined)) skip_part(in, true);
     } else if (!in.choices.empty() && (says_pragma(text, "elsif") || says_pragma(text, "else"))) {

@@ -14,7 +14,7 @@ struct PragmaWords {
     static bool is_part(char c) { return is_letter(c) || is_digit(c); }
 
     std::string_view next() const {
-        const std::size_t begin = rest.find_first_not_of("{} \t\r\n");
+        const std::size_t begin = rest.find_first_not_of("{}: \t\r\n");
         if (begin == rest.npos) return {};
         const std::string_view text = rest.substr(begin);
         const auto* end = std::ranges::find_if_not(text, is_part);
@@ -87,9 +87,16 @@ bool says_pragma(std::string_view pragma, std::string_view word) {
     return same_name(PragmaWords{pragma}.next(), word);
 }
 
+bool begins_choice(std::string_view pragma) {
+    return says_pragma(pragma, "if") || says_pragma(pragma, "ifdef") ||
+           says_pragma(pragma, "ifndef");
+}
+
 bool holds(std::string_view pragma, const Definitions& defined) {
     PragmaWords words{pragma};
-    words.take();
+    const std::string_view what = words.take();
+    if (same_name(what, "ifdef")) return defined.contains(words.take());
+    if (same_name(what, "ifndef")) return !defined.contains(words.take());
     return any_holds(words, defined);
 }
 
@@ -107,7 +114,7 @@ LeftOut left_out(std::string_view text, std::size_t at, bool may_choose,
         at = end;
         const bool ends = ends_choice(pragma);
         if (ends && inner == 0) return {at, true};
-        inner += says_pragma(pragma, "if");
+        inner += begins_choice(pragma);
         inner -= ends;
         const bool chosen =
             says_pragma(pragma, "else") || (says_pragma(pragma, "elsif") && holds(pragma, defined));

@@ -39,6 +39,7 @@ const Dialect automation_studio = [] {
     made.vendor = Vendor::automation_studio;
     made.ampersands_may_be_two = false;
     made.open_texts_end_with_lines = made.texts_end_at_zero = true;
+    made.beyond_type = BeyondType::left_in_register;
     return made;
 }();
 
@@ -79,11 +80,18 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .dates_count_seconds = true,
                          .texts_are_windows_1252 = true};
 
-const Dialect word_addressed = [] {
-    Dialect made = codesys;
+static Dialect with_words(Dialect made) {
     made.addresses_count = AddressCount::words;
     return made;
+}
+
+const Dialect codesys_23 = [] {
+    Dialect made = codesys;
+    made.pointer_bytes = 4;
+    return made;
 }();
+
+const Dialect word_addressed = with_words(codesys), word_addressed_23 = with_words(codesys_23);
 
 const Dialect twincat = [] {
     Dialect made = codesys;
@@ -126,6 +134,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .packs_as_s7 = true,
                      .vendor = Vendor::siemens,
                      .has_s7_instructions = true,
+                     .other_choice = OtherChoice::initial,
                      .crossed_limits = CrossedLimits::input,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
@@ -207,11 +216,12 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
         const Dialect& dialect;
     };
     static constexpr Ending endings[] = {
-        {".scl.txt", scl},           {".exp.txt", codesys},       {".typ", automation_studio},
+        {".scl.txt", scl},           {".exp.txt", codesys_23},    {".typ", automation_studio},
         {".var", automation_studio}, {".fun", automation_studio}, {".prg", automation_studio},
-        {".exp", codesys},           {".tcpou", twincat},         {".tcdut", twincat},
+        {".exp", codesys_23},        {".tcpou", twincat},         {".tcdut", twincat},
         {".tcgvl", twincat},         {".tcio", twincat},          {".tctleo", twincat},
-        {".plcproj", twincat},       {".xml", codesys},           {".matiec", matiec}};
+        {".plcproj", twincat},       {".xml", codesys},           {".matiec", matiec},
+        {".codesys", codesys}};
     const std::string name = lower(path);
     const auto* it = std::ranges::find_if(
         endings, [&](const Ending& known) { return name.ends_with(known.ending); });
@@ -222,7 +232,10 @@ const Dialect& dialect_of(std::string_view path, std::string_view text) {
     if (&said == &iec && is_of_codesys(text)) return codesys;
     if (&said == &iec && is_of_siemens(text)) return scl;
     if (&said == &iec && is_of_ax(text)) return simatic_ax;
-    return &said == &codesys && has_bit_of_word(text) ? word_addressed : said;
+    const bool is_older = &said == &codesys_23;
+    if ((is_older || &said == &codesys) && has_bit_of_word(text))
+        return is_older ? word_addressed_23 : word_addressed;
+    return said;
 }
 
 bool is_plain_text(std::string_view path) {
@@ -238,7 +251,7 @@ bool has_no_bodies(std::string_view path) {
 }
 
 std::span<const DialectName> dialect_names() {
-    static constexpr DialectName names[] = {{"iec", plain_text},           {"codesys", ".exp"},
+    static constexpr DialectName names[] = {{"iec", plain_text},           {"codesys", ".codesys"},
                                             {"twincat", ".tcpou"},         {"scl", ".scl"},
                                             {"automation_studio", ".prg"}, {"matiec", ".matiec"}};
     return names;

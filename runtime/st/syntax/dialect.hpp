@@ -78,6 +78,7 @@ struct Dialect {
     AddressCount addresses_count = AddressCount::bytes;
     TextOfReal text_of_real = TextOfReal::shortest;
     std::uint8_t most_aligned = 1;         ///< bytes that a member of a structure begins at
+    std::uint8_t pointer_bytes = 8;        ///< SIZEOF of a POINTER TO
     bool programs_run_as_written = false;  ///< those due at once, in spite of PRIORITY
     std::uint32_t text_length = 254;       ///< characters of a STRING without a length
     bool long_numbers_count_time = false;  ///< TIME_TO_LINT(T#1s) is 1000, else in ns
@@ -105,14 +106,16 @@ struct Dialect {
 /// IEC 61131-3:2013, the same as SIMATIC AX compiles it, what B&R declares in files of its own,
 /// CODESYS and Beckhoff's TwinCAT, and the SCL of Siemens' TIA Portal. `matiec` is what Beremiz and
 /// OpenPLC compile, in PLCopen XML and in text: as loose as CODESYS, with the standard's blocks and
-/// texts. `word_addressed` is CODESYS for devices whose bits are those of words, as WAGO's.
-extern const Dialect iec, simatic_ax, automation_studio, codesys, word_addressed, twincat, scl,
-    matiec;
+/// texts. `codesys_23` is that of CoDeSys 2.3, of 32 bits, `word_addressed` CODESYS for devices
+/// whose bits are those of words, as WAGO's.
+extern const Dialect iec, simatic_ax, automation_studio, codesys, codesys_23, word_addressed,
+    word_addressed_23, twincat, scl, matiec;
 
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
-/// `.prg` puts together are B&R's, `.EXP`, `.xml` CODESYS', `.TcPOU` and its like TwinCAT's, others
-/// SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name it may say
-/// otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's, with `{attribute
+/// `.prg` puts together are B&R's, `.EXP` CoDeSys 2.3's, `.xml` CODESYS', `.TcPOU` and its like
+/// TwinCAT's, others SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name
+/// it may say otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's, with
+/// `{attribute
 /// '...'}` CODESYS', with a line `NAMESPACE x` or `USING x;` SIMATIC AX', with one that begins with
 /// DATA_BLOCK or ORGANIZATION_BLOCK SCL; one in
 /// `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.

@@ -210,6 +210,9 @@ Pou* parse_pou(Parsing& p) {
     pou.doc = doc;
     pou.is_class = opener.word == Word::class_;
     pou.follows_init = opener.word == Word::method_ && has_attribute(p, first, "call_after_init");
+    pou.copying = has_attribute(p, first, "no_assign")           ? Copying::refused
+                  : has_attribute(p, first, "no_assign_warning") ? Copying::warned
+                                                                 : Copying::allowed;
     parse_pou_modifiers(p, pou);
     const bool is_operator =
         p.source->has_no_bodies() && !p.is_name();  // B&R declares AND and its like

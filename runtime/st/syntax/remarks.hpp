@@ -39,6 +39,9 @@ std::size_t end_of_quoted(std::string_view text, std::size_t begin);
 /// Names that `{define}` has made known, with the value that it gives them.
 using Definitions = NameMap<std::string_view>;
 
+/// `{IF ...}`; `{::ifdef X}` and `{::ifndef X}` of SIMATIC AX.
+bool begins_choice(std::string_view pragma);
+
 /// The condition of `{IF ...}` or `{ELSIF ...}`: `defined (x)`, `hasvalue (x, '1')`, NOT, AND, OR,
 /// parentheses. What else can be asked there, of a project or a device, does not hold.
 bool holds(std::string_view pragma, const Definitions& defined);

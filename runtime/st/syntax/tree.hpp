@@ -271,6 +271,9 @@ enum class PouKind : std::uint8_t {
 /// What of a PROPERTY a method is.
 enum class Accessor : std::uint8_t { none, get, set };
 
+/// `{attribute 'no_assign'}` of a FUNCTION_BLOCK: whether an instance is assigned to another one.
+enum class Copying : std::uint8_t { allowed, warned, refused };
+
 /// A program organization unit.
 struct Pou {
     PouKind kind = PouKind::program;
@@ -286,6 +289,7 @@ struct Pou {
     bool is_monitored = false;            ///< `{attribute 'monitoring' := 'call'}` of a PROPERTY
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
+    Copying copying = Copying::allowed;
     bool follows_init = false;            ///< a method that is called once behind FB_init
     bool is_action = false;      ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;        ///< not understood

@@ -110,6 +110,7 @@ std::uint64_t bytes_of(const Type& type) {
         case Type::Kind::standard:
             return type.standard->size;
         case Type::Kind::reference:
+            return type.pointer_bytes;
         case Type::Kind::handle:
             return 8;
         default:

@@ -77,6 +77,7 @@ struct Type {
     std::size_t dimensions = 1;  ///< of ARRAY[*]
     std::vector<Variable*> members = {};  ///< of a structure, a union
     std::uint8_t pack = 1;  ///< of these, of a block: bytes that a member is aligned to at most
+    std::uint8_t pointer_bytes = 8;            ///< of a reference
     bool has_unknown_base = false;             ///< of a structure: which was told, or is lost
     std::vector<std::string> values = {};      ///< of an enumeration, of named values
     std::vector<std::int64_t> numbers = {};    ///< of its values
@@ -123,6 +124,8 @@ struct Type {
     /// A text's room, and the bytes that its slots have room for.
     TextRoom room() const { return {length, is_wide}; }
     std::uint32_t text_bytes() const { return is_wide ? 3 * length : length; }
+    /// Its length, its bytes, and the one that a controller has behind them for a 0.
+    std::uint32_t text_slots() const { return 1 + (text_bytes() + 1U + 7U) / 8; }
     std::uint64_t count() const { return static_cast<std::uint64_t>(upper - lower) + 1; }
     /// What an array of all its dimensions has as elements.
     const Type& innermost() const { return has_inner ? element->innermost() : *element; }

@@ -52,7 +52,7 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, TimeForm form) {
     const auto midnight = floor<days>(moment);
     const year_month_day day(midnight);
     const hh_mm_ss clock(moment - midnight);
-    const bool is_long = form != TimeForm::plain,
+    const bool is_long = form == TimeForm::of_long || form == TimeForm::of_long_in_codesys,
                is_of_codesys = form == TimeForm::of_long_in_codesys;
     const char* const of_date = is_of_codesys ? "LD" : is_long ? "LDATE" : "D";
     fmt::format_to(to, "{}#",
@@ -65,9 +65,15 @@ void add_date(Out to, Kind kind, std::int64_t since_1970, TimeForm form) {
     if (kind == Kind::date) return;
     const auto hours =
         kind == Kind::clock ? floor<std::chrono::hours>(nanoseconds(since_1970)) : clock.hours();
-    fmt::format_to(to, "{}{:02}:{:02}:{:02}", kind == Kind::moment ? "-" : "", hours.count(),
-                   clock.minutes().count(), clock.seconds().count());
-    const auto rest = clock.subseconds().count();
+    fmt::format_to(to, "{}{:02}:{:02}:", kind == Kind::moment ? "-" : "", hours.count(),
+                   clock.minutes().count());
+    const auto seconds = clock.seconds().count(), rest = clock.subseconds().count();
+    if (rest != 0 && form == TimeForm::of_matiec) {
+        fmt::format_to(to, "{:09.6f}",
+                       static_cast<double>(seconds) + static_cast<double>(rest) / 1e9);
+        return;
+    }
+    fmt::format_to(to, "{:02}", seconds);
     if (rest % 1'000'000 != 0 || (rest != 0 && is_of_codesys))
         fmt::format_to(to, ".{:09}", rest);
     else if (rest != 0)

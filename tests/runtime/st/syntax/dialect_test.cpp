@@ -23,9 +23,11 @@ TEST_CASE("Structured Text: the ending of a file's name is its dialect", "[st]")
     CHECK(written("USING System.Timer;\n") == &st::simatic_ax);
     CHECK(written("// USING x;\n    NAMESPACE Plant.Axes // of one\n") == &st::simatic_ax);
     CHECK(written("(* by\nUSING the timer of it;\nNAMESPACE 'x'\n*)") == &st::iec);
-    for (const char* path : {"plc.EXP", "plc.xml"}) CHECK(&st::dialect_of(path) == &st::codesys);
-    CHECK(&st::dialect_of("plc.EXP", "lamp AT %QX0.12 : BOOL;") == &st::word_addressed);
-    CHECK(&st::dialect_of("plc.EXP", "%QX0.7 %QW0 %IX10.3 'of 10% X0.12'") == &st::codesys);
+    CHECK(&st::dialect_of("plc.xml") == &st::codesys);
+    CHECK(&st::dialect_of("plc.EXP") == &st::codesys_23);
+    CHECK(&st::dialect_of("plc.xml", "lamp AT %QX0.12 : BOOL;") == &st::word_addressed);
+    CHECK(&st::dialect_of("plc.EXP", "lamp AT %QX0.12 : BOOL;") == &st::word_addressed_23);
+    CHECK(&st::dialect_of("plc.EXP", "%QX0.7 %QW0 %IX10.3 'of 10% X0.12'") == &st::codesys_23);
     CHECK(&st::dialect_of("plc.st", "lamp AT %QX0.12 : BOOL;") == &st::iec);
     for (const char* path : {"MAIN.TcPOU", "GVL.TcGVL", "T.TcDUT", "I.TcIO"})
         CHECK(&st::dialect_of(path) == &st::twincat);
