@@ -172,6 +172,7 @@ struct Checking {
         bool is_made = false;         ///< something of it is assigned
     } beginning = {};
     std::unordered_set<const Statement*> beginnings = {};  ///< whose targets others may not assign
+    std::unordered_set<const Statement*> renewals = {};    ///< by which an instance begins anew
     std::unordered_map<const Type*, bool> types_with_commands = {};  ///< structures and blocks
     /// Whose constants a member of a structure that a routine writes out may begin with.
     std::unordered_map<const Variable*, Routine*> routines_of_members = {};

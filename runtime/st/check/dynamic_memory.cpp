@@ -127,9 +127,11 @@ Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, 
     const auto at_counter = [&] {
         return element(c, like, *pool.elements, use_of(c, like, counter));
     };
-    body.push_back(
+    Statement* renewal =
         make_assignment(c, like.place, at_counter(),
-                        element(c, like, *pool.elements, number(c, like, size_of_pool(type)))));
+                        element(c, like, *pool.elements, number(c, like, size_of_pool(type))));
+    c.renewals.insert(renewal);
+    body.push_back(renewal);
     const auto made = [&] { return instance(c, like, *pool.elements, use_of(c, like, counter)); };
     construct_one(c, like, *c.routine, type, values, made, body);
     Expression* last = binary(c, like, Word::plus, use_of(c, like, first), count);
@@ -310,6 +312,7 @@ bool rewrite_init(Checking& c, Statement*& s) {
     const auto instance = [&] { return make_copy(c, like); };
     Variable& untouched = c.make_variable(*c.routine, callee.token, "FB_init.untouched", type);
     Block all{make_assignment(c, s->place, instance(), make_use(c, like, untouched))};
+    c.renewals.insert(all.front());
     if (is_constructed(c, type)) construct_one(c, like, *c.routine, *type, nullptr, instance, all);
     s = make_sequence(c, s->place, std::move(all));
     check(c, s);

@@ -41,6 +41,7 @@ Block make_copies(Checking& c, const Block& statements) {
     for (const Statement* s : statements) {
         Statement* copy = keep(c, Statement(*s));
         if (c.beginnings.contains(s)) c.beginnings.insert(copy);
+        if (c.renewals.contains(s)) c.renewals.insert(copy);
         copy->body = make_copies(c, s->body);
         for (Branch& branch : copy->branches) branch.body = make_copies(c, branch.body);
         made.push_back(copy);

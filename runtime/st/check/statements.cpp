@@ -458,6 +458,7 @@ void check_assignment(Checking& c, Statement*& s) {
     if (rewrite_property(c, s) || rewrite_s5_reset(c, s)) return;
     if (s->op == Word::reference_assign) return check_reference_assignment(c, *s);
     const bool is_of_target = s->target->kind == E::deref, begins = c.beginnings.contains(s);
+    const bool renews = c.renewals.contains(s);
     const Type* type = check(c, s->target);
     s->target = keeper_of_pointer(s->target);
     if (type) type = s->target->type;
@@ -478,9 +479,9 @@ void check_assignment(Checking& c, Statement*& s) {
     if (means_address(*s->target, *s->value)) return assign_address(c, *s);
     if (type->is_instance() && s->op == Word::assign && is_same_object(*s->target, *s->value))
         return void(s = make_sequence(c, s->place, {}));
-    if (refuse_copy_of_command(c, s->place, *type)) return;
+    if (!renews && refuse_copy_of_command(c, s->place, *type)) return;
     if (type->is_instance() && s->op == Word::assign && is_given_whole(c, s->value, *type))
-        return may_be_assigned(c, *s) ? begin_both(c, s) : void();
+        return renews || may_be_assigned(c, *s) ? begin_both(c, s) : void();
     if (type->is_instance())
         return void(c.fail(code::cannot_be_assigned, s->place,
                            "an instance is not assigned as a whole",

@@ -365,9 +365,10 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
     return is_open_array(text) ? resolve_open_array(c, text) : resolve(c, text);
 }
 
-/// `axis` of the catalogue is a block of the program; AXIS of a vendor's project is another type.
-static bool is_of_catalog_alone(const Type& type, const Token& name) {
-    return type.is_object() && name.place.dialect().vendor != Vendor::none;
+/// `axis` of the catalogue is a block of the program, and of a test; AXIS of a vendor's project is
+/// another type.
+static bool is_of_catalog_alone(const Checking& c, const Type& type, const Token& name) {
+    return type.is_object() && name.place.dialect().vendor != Vendor::none && !c.is_in_test();
 }
 
 const Type* resolve_name(Checking& c, const Token& name) {
@@ -400,7 +401,7 @@ const Type* resolve_name(Checking& c, const Token& name) {
     }
     const std::string_view bare = without_library(name.text);
     if (const Type* type = standard_type(c, bare, name.place.dialect().vendor);
-        type && !is_of_catalog_alone(*type, name)) {
+        type && !is_of_catalog_alone(c, *type, name)) {
         c.note(name.place, *type);
         return type;
     }

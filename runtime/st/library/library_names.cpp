@@ -17,7 +17,8 @@ namespace lineshaft::st {
 /// Of all files.
 struct LibraryNames::Index {
     NameMap<std::vector<const LibraryFile*>> by_name;  ///< those that are looked for
-    NameMap<NameSet> values;  ///< of enumerations, and the libraries that have them
+    NameMap<NameSet> values;        ///< of enumerations, and the libraries that have them
+    NameMap<NameSet> enumerations;  ///< of values
     NameMap<const LibraryFile*> by_full_name;
     NameMap<const LibraryFile*> of_siemens;  ///< that Siemens' sources name without their library
     NameSet of_catalog;  ///< names that are not looked for unless their library is taken
@@ -128,8 +129,13 @@ LibraryNames::Index make_index(const Catalog& catalog) {
     for (const LibraryFile& file : catalog.libraries()) {
         index.libraries[file.library].push_back(&file);
         index.firsts.insert(file.library.substr(0, file.library.find('.')));
+        std::string_view enumeration;
         for (const auto& [name, is_value] : names_in(file)) {
-            if (is_value) index.values[name].insert(file.library);
+            if (!is_value) enumeration = name;
+            if (is_value) {
+                index.values[name].insert(file.library);
+                index.enumerations[name].insert(enumeration);
+            }
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
             index.by_full_name.emplace(full, &file);
@@ -375,6 +381,11 @@ bool LibraryNames::names_values_of_plcopen() const {
 bool LibraryNames::is_hidden(const LibraryFile& file, std::string_view name) const {
     const NameSet* libraries = find_in(index_.values, name);
     if (!libraries || !libraries->contains(file.library)) return false;
+    const auto is_named = [&](std::string_view enumeration) {
+        const auto it = index_.by_name.find(enumeration);
+        return it != index_.by_name.end() && names_.contains(it->first);
+    };
+    if (std::ranges::any_of(index_.enumerations.at(name), is_named)) return false;
     const bool is_of_twincat = file.library.starts_with("Tc");
     const bool is_foreign = is_of_twincat || file.library.starts_with("SM3_");
     const bool is_with_all =

@@ -33,14 +33,41 @@ std::optional<std::array<Op, 2>> halves_of(Op op) {
     }
 }
 
+void add_parts(const Code& code, std::uint32_t number, std::vector<StencilCopy>& to) {
+    const Instruction& in = code.instructions[number];
+    const auto add = [&](const Instruction& part) {
+        to.emplace_back();
+        to.back().in = part;
+        to.back().number = number;
+    };
+    if (const auto halves = halves_of(in.op)) {
+        add({.op = (*halves)[0], .a = in.a, .b = in.a, .c = in.b});
+        add({.op = (*halves)[1], .a = in.a, .b = in.d, .c = in.c});
+    } else {
+        add(in);
+    }
+}
+
+/// What the part before has left in a register need not be loaded.
+bool leaves_out_load(const StencilCopy& before, const StencilCopy& part) {
+    const std::string_view operands = info(before.in.op).operands;
+    if (operands[0] != 'w' || !before.has_result() ||
+        part.stencil().into != before.stencil().result)
+        return false;
+    const Filling& load = part.fillings().front();
+    return load.at + 4 == part.stencil().load && part.slot(load.hole) == before.result_slot();
+}
+
+/// What a loop has in registers.
 class Keeping {
   public:
-    explicit Keeping(const Code& code) : code_(code), flow_(flow_of(code)) {}
+    Keeping(const Code& code, const Loop& loop) : code_(code), first_(loop.first) {
+        for (std::uint32_t i = loop.first; i <= loop.last; ++i) add_parts(code, i, parts_);
+    }
 
+    /// Its parts; none where nothing is kept.
     std::vector<StencilCopy> parts() {
-        for (std::uint32_t i = 0; i < code_.instructions.size(); ++i) add(i);
-        for (const Loop& loop : flow_.loops) keep_in(loop);
-        for (std::size_t i = 1; i < parts_.size(); ++i) leave_out_load(i);
+        if (!keep()) parts_.clear();
         return std::move(parts_);
     }
 
@@ -58,39 +85,15 @@ class Keeping {
         }
     };
 
-    void add(std::uint32_t number) {
-        firsts_.push_back(static_cast<std::uint32_t>(parts_.size()));
-        const Instruction& in = code_.instructions[number];
-        if (const auto halves = halves_of(in.op)) {
-            append({.op = (*halves)[0], .a = in.a, .b = in.a, .c = in.b}, number);
-            append({.op = (*halves)[1], .a = in.a, .b = in.d, .c = in.c}, number);
-        } else {
-            append(in, number);
-        }
-    }
-
-    void append(const Instruction& in, std::uint32_t number) {
-        StencilCopy& part = parts_.emplace_back();
-        part.in = in;
-        part.number = number;
-    }
-
     static bool repeats(const StencilCopy& part) {
         return std::ranges::count(part.fillings(), Hole::repeat_target, &Filling::hole) > 0;
     }
 
-    std::span<StencilCopy> parts_in(const Loop& loop) {
-        const auto end = loop.last + 1 < firsts_.size() ? firsts_[loop.last + 1] : parts_.size();
-        return std::span(parts_).subspan(firsts_[loop.first], end - firsts_[loop.first]);
-    }
-
-    void keep_in(const Loop& all) {
-        const std::span<StencilCopy> loop = parts_in(all);
-        uses_.clear();
+    bool keep() {
         std::uint8_t spoiled = 0;
-        for (const StencilCopy& part : loop) {
+        for (const StencilCopy& part : parts_) {
             spoiled |= part.stencil().spoils;
-            if (spoiled == 0xFF) return;
+            if (spoiled == 0xFF) return false;
             note_uses(part);
         }
         std::vector<KeptSlot> kept;
@@ -106,11 +109,12 @@ class Keeping {
         }
         std::uint32_t bytes = 0;
         for (const KeptSlot& one : kept) bytes += load_size(one.in);
-        for (StencilCopy& part : loop) {
+        for (StencilCopy& part : parts_) {
             keep(part, kept);
-            if (repeats(part) && code_.place_of(part.in.c) == all.first) part.skipped = bytes;
+            if (repeats(part) && code_.place_of(part.in.c) == first_) part.skipped = bytes;
         }
-        loop.front().loads = std::move(kept);
+        parts_.front().loads = std::move(kept);
+        return true;
     }
 
     Use& use_of(std::uint32_t slot) {
@@ -151,31 +155,39 @@ class Keeping {
         }
     }
 
-    /// What the part before has left in a register need not be loaded.
-    void leave_out_load(std::size_t at) {
-        StencilCopy& part = parts_[at];
-        const StencilCopy& before = parts_[at - 1];
-        const bool is_gone_to = before.number != part.number && flow_.labels[part.number];
-        const std::string_view operands = info(before.in.op).operands;
-        if (is_gone_to || operands[0] != 'w' || !before.has_result() ||
-            part.stencil().into != before.stencil().result)
-            return;
-        const Filling& load = part.fillings().front();
-        part.leaves_out_load =
-            load.at + 4 == part.stencil().load && part.slot(load.hole) == before.result_slot();
-    }
-
     const Code& code_;
+    std::uint32_t first_;
     std::vector<StencilCopy> parts_;
-    std::vector<std::uint32_t> firsts_;  ///< parts, by instruction
-    Flow flow_;
     std::vector<Use> uses_;
 };
 
 }  // namespace
 
-std::vector<StencilCopy> parts_of(const Code& code) {
-    return Keeping(code).parts();
+StencilCopies::StencilCopies(const Code& code) : code_(code) {
+    Flow flow = flow_of(code);
+    labels_ = std::move(flow.labels);
+    for (const Loop& loop : flow.loops)
+        if (auto parts = Keeping(code, loop).parts(); !parts.empty())
+            loops_.emplace(loop.first, std::move(parts));
+}
+
+void StencilCopies::each(const std::function<void(const StencilCopy&)>& with) const {
+    std::optional<StencilCopy> before;
+    std::vector<StencilCopy> parts;
+    for (std::uint32_t i = 0; i < code_.instructions.size(); i = before->number + 1) {
+        const auto loop = loops_.find(i);
+        parts.clear();
+        if (loop == loops_.end())
+            add_parts(code_, i, parts);
+        else
+            parts = loop->second;
+        for (StencilCopy& part : parts) {
+            const bool is_gone_to = before && before->number != part.number && labels_[part.number];
+            part.leaves_out_load = before && !is_gone_to && leaves_out_load(*before, part);
+            with(part);
+            before = std::move(part);
+        }
+    }
 }
 
 #endif

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -52,6 +54,17 @@ constexpr std::uint32_t move_size(std::uint8_t to) {
 
 /// The parts of all instructions. A result that is read at once is not loaded; a short loop without
 /// calls has what it writes and reads again in registers.
-std::vector<StencilCopy> parts_of(const Code& code);
+class StencilCopies {
+  public:
+    explicit StencilCopies(const Code& code);
+
+    /// In their order.
+    void each(const std::function<void(const StencilCopy&)>& with) const;
+
+  private:
+    const Code& code_;
+    std::vector<bool> labels_;                                 ///< by instruction, as in a Flow
+    std::map<std::uint32_t, std::vector<StencilCopy>> loops_;  ///< by their first instruction
+};
 
 }  // namespace lineshaft::st

@@ -54,23 +54,23 @@ constexpr unsigned char real_load[] = {0xF2, 0x0F, 0x10};
 /// Copies the stencils of all instructions, and fills their holes.
 class Patching {
   public:
-    Patching(const Code& code, Native& native)
-        : code_(code), native_(native), parts_(parts_of(code)) {}
+    Patching(const Code& code, Native& native) : code_(code), native_(native), parts_(code) {}
 
     /// Lays out the far jumps, the constants, the instructions, and what is seldom executed.
     std::uint64_t lay_out() {
         constants_ = far_jump_size * stencil_externals_count;
         std::uint64_t size = (constants_ + stencil_constants_size + 15) / 16 * 16;
         native_.places.reserve(code_.instructions.size() + 1);
-        for (const StencilCopy& part : parts_) {
+        std::uint64_t cold_size = 0;
+        parts_.each([&](const StencilCopy& part) {
             if (part.number == native_.places.size())
                 native_.places.push_back(static_cast<std::uint32_t>(size));
             size += size_of(part);
-        }
+            cold_size += part.stencil().cold_size;
+        });
         native_.places.push_back(static_cast<std::uint32_t>(size));
         cold_ = size;
-        for (const StencilCopy& part : parts_) size += part.stencil().cold_size;
-        return size;
+        return size + cold_size;
     }
 
     /// False for an operand that does not fit its hole.
@@ -84,7 +84,7 @@ class Patching {
         std::memcpy(first + constants_, stencil_constants, stencil_constants_size);
         bool fits = true;
         hot_ = native_.places.front();
-        for (const StencilCopy& part : parts_) fits = write_part(part) && fits;
+        parts_.each([&](const StencilCopy& part) { fits = write_part(part) && fits; });
         return fits;
     }
 
@@ -246,7 +246,7 @@ class Patching {
 
     const Code& code_;
     Native& native_;
-    std::vector<StencilCopy> parts_;
+    const StencilCopies parts_;
     std::byte* first_ = nullptr;
     std::uint64_t constants_ = 0;
     std::uint64_t hot_ = 0, cold_ = 0;  ///< how far they are written
