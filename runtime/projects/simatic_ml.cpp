@@ -195,8 +195,17 @@ class SimaticObject {
             if (const auto value = element.child("StartValue"))
                 add_value(indexed(name, file_.plain(element.attribute("Path"))), value);
         for (const auto part : member.children("Member")) add_values(part, name + ".", is_instance);
-        for (const auto section : member.child("Sections").children("Section"))
+        for (const auto section : member.child("Sections").children("Section")) {
+            if (is_memory_of_edge(member, section)) continue;
             for (const auto part : section.children("Member")) add_values(part, name + ".", true);
+        }
+    }
+
+    /// What R_TRIG and F_TRIG keep is no part that is named.
+    bool is_memory_of_edge(pugi::xml_node member, pugi::xml_node section) const {
+        const std::string type = file_.plain(member.attribute("Datatype"));
+        return (type == "R_TRIG" || type == "F_TRIG") &&
+               section.attribute("Name").value() == std::string_view("Static");
     }
     static constexpr char an_index = '\1';
 

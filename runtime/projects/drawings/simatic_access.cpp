@@ -130,7 +130,13 @@ void SimaticAccess::write_index(Excerpts& to, pugi::xml_node component) const {
 
 /// A literal as it is written, or a constant by its name.
 void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool is_local) const {
-    if (const auto value = constant.child("ConstantValue")) return file_.copy(to, value);
+    if (const auto value = constant.child("ConstantValue")) {
+        const bool is_bool = same_name(file_.plain(constant.child("ConstantType")), "bool");
+        const std::string written = file_.plain(value);
+        if (is_bool && (written == "1" || written == "0"))
+            return to.write(written == "1" ? "TRUE" : "FALSE", place(value));
+        return file_.copy(to, value);
+    }
     if (is_local) to.write("#", place(constant));
     write_name(to, constant, !is_local || !is_plain(file_.plain(constant.attribute("Name"))));
 }

@@ -47,12 +47,16 @@ std::vector<Expression*> given_for(Checking& c, const Expression& call,
 std::optional<Area> area_of(Checking& c, Expression*& number) {
     if (!check(c, number)) return {};
     become_lint(c, number);
-    constexpr int first = 0x81;
-    const Wide area = is_constant(*number) ? number->constant.integer - first : -1;
+    constexpr int first = 0x81, first_of_periphery = 1, last_of_periphery = 2;
+    const Wide code = is_constant(*number) ? number->constant.integer : 0;
+    const bool is_of_periphery = code >= first_of_periphery && code <= last_of_periphery;
+    const Wide area = code - (is_of_periphery ? first_of_periphery : first);
     if (area >= 0 && area < Wide{areas}) return static_cast<Area>(area);
-    c.fail(code::not_supported, number->place,
-           "PEEK and POKE are of the areas 16#81, 16#82 and 16#83: inputs, outputs and memory bits",
-           "use a variable of a data block by its name");
+    c.fail(
+        code::not_supported, number->place,
+        "PEEK and POKE are of the areas 16#81, 16#82 and 16#83: inputs, outputs and memory bits, "
+        "and of 16#1 and 16#2, which are inputs and outputs, too",
+        "use a variable of a data block by its name");
     return {};
 }
 

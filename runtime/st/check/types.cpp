@@ -460,7 +460,9 @@ const Type* resolve_declared(Checking& c, NamedType& named) {
         copy.initial_value = declared.initial;
         type = &copy;
         Expression* value = without_own_name(c, declared);
+        named.visiting = true;
         check_initial(c, value, copy);
+        named.visiting = false;
         copy.initial_value = value;
     }
     if (is_own)  // within the declaration its values have no need of its name

@@ -48,12 +48,13 @@ constexpr DescribedFunction described_dates[] = {
     {"DTL_TO_LTOD(IN: DTL): LTOD", "its time of day"},
     {"RD_SYS_T(OUT => DTL or LDT): INT", "the clock, which begins with the run at 1970-01-01; gives 0"},
     {"RD_LOC_T(OUT => DTL or LDT): INT", "the same: local time is UTC"},
+    {"WR_SYS_T(IN: DTL or LDT): INT", "sets no clock, which is that of the run: gives 16#80B0"},
     {"TIME_TO_S5TIME(IN: TIME): S5TIME", "the nearest time that an S5TIME has, of the shortest base"},
     {"S5TIME_TO_TIME(IN: S5TIME): TIME", "the time of three digits and a base"},
     {"RUNTIME(MEM: LREAL): LREAL", "the time since the call that left MEM [s], which it writes; within a scan none passes"},
 };
 constexpr DescribedFunction described_bytes[] = {
-    {"PEEK(area, dbNumber, byteOffset: ANY_INT): BYTE", "a byte of the inputs, outputs or memory bits (areas 16#81, 16#82, 16#83)"},
+    {"PEEK(area, dbNumber, byteOffset: ANY_INT): BYTE", "a byte of the inputs, outputs or memory bits (areas 16#81, 16#82, 16#83; 16#1 and 16#2 are inputs and outputs, too)"},
     {"PEEK_BYTE(area, dbNumber, byteOffset: ANY_INT): BYTE", "the same as PEEK"},
     {"PEEK_WORD(area, dbNumber, byteOffset: ANY_INT): WORD", "two bytes there, the highest first"},
     {"PEEK_DWORD(area, dbNumber, byteOffset: ANY_INT): DWORD", "four bytes there, the highest first"},
