@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft::projects {

@@ -8,6 +8,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
 

@@ -16,6 +16,7 @@
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 #include "runtime/st/syntax/list_properties.hpp"
+#include "runtime/st/syntax/words.hpp"
 
 namespace lineshaft::projects {
 

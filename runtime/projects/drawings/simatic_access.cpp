@@ -131,7 +131,7 @@ void SimaticAccess::write_index(Excerpts& to, pugi::xml_node component) const {
 /// A literal as it is written, or a constant by its name.
 void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool is_local) const {
     if (const auto value = constant.child("ConstantValue")) {
-        const bool is_bool = same_name(file_.plain(constant.child("ConstantType")), "bool");
+        const bool is_bool = st::same_name(file_.plain(constant.child("ConstantType")), "bool");
         const std::string written = file_.plain(value);
         if (is_bool && (written == "1" || written == "0"))
             return to.write(written == "1" ? "TRUE" : "FALSE", place(value));

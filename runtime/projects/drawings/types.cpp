@@ -87,7 +87,7 @@ bool is_of_dates(const StandardFunction& f) {
 
 /// NOT is an operator that is drawn as a function, and no row.
 bool is_not(std::string_view function) {
-    return same_name(function, "not");
+    return st::same_name(function, "not");
 }
 
 /// Its operands are truth values, unless something is known to be otherwise.

@@ -4,6 +4,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/mixed_signs.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::st {
 

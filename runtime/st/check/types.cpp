@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "runtime/st/generate/layout.hpp"
 
 namespace lineshaft::st {
