@@ -69,7 +69,8 @@ constexpr std::uint32_t recurring_levels = 500;
 void prepare_dispatch(Writing& w);
 
 /// Where a parameter of a method stands behind its `Routine::first`, the same in all that replace
-/// one another: what is given first, then its result, outputs and ENO, whatever its own block is like.
+/// one another: what is given first, then its result, outputs and ENO, whatever its own block is
+/// like.
 std::uint32_t slot_in_signature(Writing& w, const Routine& method, const Variable& parameter);
 /// The parameters of a method as they begin, in that order.
 const Writing::Image& signature_image(Writing& w, const Routine& method);

@@ -131,10 +131,11 @@ LibraryNames::Index make_index(const Catalog& catalog) {
         index.firsts.insert(file.library.substr(0, file.library.find('.')));
         std::string_view enumeration;
         for (const auto& [name, is_value] : names_in(file)) {
-            if (!is_value) enumeration = name;
             if (is_value) {
                 index.values[name].insert(file.library);
                 index.enumerations[name].insert(enumeration);
+            } else {
+                enumeration = name;
             }
             const std::string& full =
                 index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));

@@ -290,7 +290,7 @@ struct Pou {
     std::vector<Token> bases = {};        ///< behind EXTENDS
     std::vector<Token> implemented = {};  ///< behind IMPLEMENTS
     Copying copying = Copying::allowed;
-    bool follows_init = false;            ///< a method that is called once behind FB_init
+    bool follows_init = false;   ///< a method that is called once behind FB_init
     bool is_action = false;      ///< of a method, and of a function that is one beside all blocks
     bool is_lost = false;        ///< not understood
     bool is_configured = false;  ///< made of a PROGRAM for one that a CONFIGURATION has of it

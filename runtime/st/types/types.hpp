@@ -260,7 +260,7 @@ struct Routine {
     bool is_dispatched = false;                     ///< a call may find it by the instance
     bool dispatches = false;                        ///< calls what is found by an instance
     Variable* result = nullptr;
-    Variable* eno = nullptr;  ///< the flag that callers may take, if one does
+    Variable* eno = nullptr;         ///< the flag that callers may take, if one does
     Type* type = nullptr;            ///< of its instances, of a block
     Block body = {};                 ///< as checked: what its statements stand for
     Block before = {}, behind = {};  ///< copies that a CONFIGURATION asks for around it
