@@ -111,9 +111,9 @@ Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlock
         Expression* place = make_member(c, argument.value, "place");
         check(c, place);
         whole = make_target(c, like, make_converted(c, place, pointer_to(c, type)), &type);
-        is_it = make_binary(c, like.place, like.place, Word::equal,
-                            make_member(c, argument.value, "type_number"),
-                            make_constant(c, like, dint_type, {.integer = number}));
+        is_it =
+            make_binary(c, like.place, like.place, Word::equal,
+                        make_member(c, argument.value, "type_number"), make_dint(c, like, number));
         argument.value = whole;
     }
     Expression* call = make_call(c, like, make_function_name(c, *like.operands[0], blocks.function),

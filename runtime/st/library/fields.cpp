@@ -199,14 +199,6 @@ class FieldWriter {
             kind_.shortened.push_back(made_.names.emplace_back(begin_));
     }
 
-    static bool has_handle(const Type& type) {
-        const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
-        if (type.kind == Kind::array) return has_handle(*type.element);
-        if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
-        if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
-        return type.kind == Kind::handle;
-    }
-
     /// `VAR axis : AXIS_REF` may be given one of the program's, as TwinCAT links it to one of its
     /// numerical control. What a caller gives to a part is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
