@@ -105,8 +105,8 @@ const Type* check_logic(Checking& c, Expression*& e) {
                       fmt::format("{} takes two BOOL", shown(e->op)));
     // MatIEC makes && and || of them.
     const bool is_shortened = (e->op == Word::and_ || e->op == Word::or_) &&
-                              e->place.dialect().vendor == Vendor::matiec &&
-                              a.kind == Kind::boolean && b.kind == Kind::boolean;
+                              e->place.dialect().ands_end_early && a.kind == Kind::boolean &&
+                              b.kind == Kind::boolean;
     if (is_shortened)
         e = make_binary(c, e->place, e->token.place,
                         e->op == Word::and_ ? Word::and_then_ : Word::or_else_, e->operands[0],
@@ -166,7 +166,7 @@ bool compares_parts(const Expression& e) {
     const Type& type = *left.type;
     constexpr Wide most = 256;
     return (e.op == Word::equal || e.op == Word::unequal) &&
-           e.place.dialect().vendor == Vendor::siemens && same_type(type, *right.type) &&
+           e.place.dialect().compares_structures && same_type(type, *right.type) &&
            (type.kind == Kind::structure || (type.kind == Kind::array && !type.is_open)) &&
            !has_call(left) && !has_call(right) && count_parts(type) <= most;
 }

@@ -19,7 +19,7 @@ void write_character(Writing& w, const Statement& s) {
     const Dialect& dialect = s.target->place.dialect();
     Slot room = capacity_of(w, at, *text.type);
     const bool may_miss = dialect.characters_may_be_missing,
-               grows = !may_miss && dialect.vendor == Vendor::none;
+               grows = dialect.texts_grow_by_characters;
     if (may_miss || grows) {
         const TextRoom any(0, false), rule = grows ? any.that_grows() : any.that_may_miss();
         room = w.emit(Op::or_bits, none, room, w.constant_slot(rule.number()));

@@ -70,8 +70,8 @@ class FieldWriter {
         reference.required = true;
     }
 
-    /// Of a data block, whose variables are all its own. What a library keeps many of is nobody
-    /// else's.
+    /// It is one of a data block, whose variables are all its own. What a library keeps many of
+    /// is nobody else's.
     void write_member(const Variable& member) {
         const bool are_librarys =
             member.name.place.source && member.name.place.source->is_library() &&
@@ -281,7 +281,7 @@ class FieldWriter {
     Count fields_, texts_;
 };
 
-/// Of all that `routine` runs, the blocks of the program that are named.
+/// Adds the blocks of the program that are named in all that `routine` runs.
 void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
     if (!seen.insert(&routine).second) return;
     objects.insert(routine.objects.begin(), routine.objects.end());

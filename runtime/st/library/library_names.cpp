@@ -69,7 +69,9 @@ bool is_of_mapp(std::string_view library) {
 bool is_of_softmotion(const Declaration& declared) {
     if (!declared.type || !declared.type->name.place.source) return false;
     const Token& type = declared.type->name;
-    return type.place.dialect().vendor == Vendor::codesys && same_name(type.text, "AXIS_REF_SM3");
+    const Libraries theirs = type.place.dialect().libraries;
+    return (theirs == Libraries::codesys || theirs == Libraries::twincat) &&
+           same_name(type.text, "AXIS_REF_SM3");
 }
 
 bool is_helper(std::string_view name) {
@@ -225,13 +227,14 @@ void LibraryNames::note_libraries(const Tokens& tokens) {
 void LibraryNames::note(const Token& name) {
     const bool is_plain = !name.quoted && !name.local && name.place.source;
     if (!is_plain) return;
-    if (&name.place.dialect() == &scl || reading_ == siemens_motion) {
+    const Libraries theirs = name.place.dialect().libraries;
+    if (theirs == Libraries::siemens || reading_ == siemens_motion) {
         const auto own = index_.of_siemens.find(name.text);
         if (own != index_.of_siemens.end()) of_siemens_.insert(own->first);
         return;
     }
     const auto it = index_.by_name.find(name.text);
-    const bool is_twincat = &name.place.dialect() == &twincat;
+    const bool is_twincat = theirs == Libraries::twincat;
     if (it == index_.by_name.end() || (is_of_twincat_alone(it->first) && !is_twincat)) return;
     const bool is_plcopens = it->second.front()->library == plcopen_enumerations;
     const bool may_be_plcopens = reading_.empty() && !name.place.dialect().is_loose;
@@ -241,8 +244,8 @@ void LibraryNames::note(const Token& name) {
     names_.insert(it->first);
     if (!reading_.empty()) of_libraries_.insert(it->first);
     if (is_twincat) of_twincat_.insert(it->first);
-    if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
-    const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
+    if (theirs == Libraries::matiec) of_matiec_.insert(it->first);
+    const bool in_studio = theirs == Libraries::automation_studio;
     if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);
     if (in_studio) of_studio_.insert(it->first);
 }
@@ -305,7 +308,8 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
 std::string_view LibraryNames::block_of(const Declaration& declared) const {
     if (!declared.type) return {};
     const Token& name = declared.type->name;
-    const bool is_of_siemens = name.place.source && &name.place.dialect() == &scl;
+    const bool is_of_siemens =
+        name.place.source && name.place.dialect().libraries == Libraries::siemens;
     if (is_of_siemens) {
         const auto it = index_.of_siemens.find(name.text);
         return it == index_.of_siemens.end() ? std::string_view() : it->first;

@@ -29,7 +29,7 @@ std::uint64_t bytes_of_block(const Type& type) {
     Routine& block = *type.routine;
     if (block.is_measured) return 0;
     block.is_measured = true;
-    const bool has_methods = block.pou->name.place.dialect().vendor == Vendor::codesys;
+    const bool has_methods = block.pou->name.place.dialect().blocks_begin_with_methods;
     std::uint64_t bits = 8 * (block.base ? bytes_of(*block.base->type) : has_methods ? 8U : 0U);
     for (const Variable& variable : block.variables)
         if (variable.type && variable.space == Space::frame)
