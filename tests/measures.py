@@ -27,8 +27,8 @@ LONG_FUNCTIONS = {
     "runtime/st/code/machine.cpp:run",  # the loop of the machine
 }
 CLOSED_ENUMERATIONS = {"Command", "GroupCommand", "TestCall", "PathFault", "PlanResult", "RegisterType"}
-COMPARISONS_OF_DIALECTS = 67
-COMMENTS_WITH_OF = 82
+COMPARISONS_OF_DIALECTS = 7
+COMMENTS_WITH_OF = 0
 
 source = pathlib.Path(sys.argv[1])
 wrong = []

@@ -12,7 +12,7 @@ bool ends_standing(Command command) {
     return command == move_absolute || command == move_relative || command == move_additive;
 }
 
-/// Of the two velocities the one that the mode wants where they meet.
+/// The one of two velocities that the mode wants where they meet.
 double wanted_velocity(BufferMode mode, double previous, double next) {
     switch (mode) {
         case BufferMode::blending_low:
@@ -40,8 +40,8 @@ double sign_towards(double way) {
     return way < 0 ? -1 : way > 0 ? 1 : 0;
 }
 
-/// Of a way between two positions, what a plan that does not turn round may use: the rest is for
-/// rounding.
+/// How much of the way between two positions a plan that does not turn round may use: the rest is
+/// for rounding.
 double room_between(double from, double to) {
     const double way = std::abs(to - from);
     return std::max(0.0, way - 1e-13 * (std::abs(from) + std::abs(to) + way));
@@ -109,7 +109,7 @@ void Axis::foresee_speeds(const Request& request, const Request& before, double 
     if (to.joins == 0) to.passes = 0;
 }
 
-/// Of the command before a job in the queue.
+/// What is known of the command before a job in the queue.
 Axis::Before Axis::before(const Context& context, const Job& job) const {
     if (job.previous == nowhere) {
         const bool goes = doing == Doing::moving_to_point || paused != 0;
@@ -195,7 +195,7 @@ bool Axis::plan_to_junction(const Junction& junction, double end_velocity, Point
            !motion.turns(direction);
 }
 
-/// Of the velocities those from which the axis can brake inside its limits; empty: from none.
+/// The velocities from which the axis can brake inside its limits; empty: there is none.
 std::optional<Speeds> Axis::brakeable(const Speeds& exit, const Junction& junction) const {
     if (!software_limits) return exit;
     const auto can = [&](double v) {

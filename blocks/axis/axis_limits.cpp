@@ -10,8 +10,8 @@ namespace lineshaft {
 
 namespace {
 
-/// Of sums as 0.1 + 0.2: a billionth of the unit, or of a shorter way between the limits, and what
-/// rounding does to the limit itself.
+/// How far sums as 0.1 + 0.2 may be off: a billionth of the unit, or of a shorter way between the
+/// limits, and what rounding does to the limit itself.
 double tolerance_of(double limit, double size) {
     constexpr double part = 1e-9, rounding = 8 * std::numeric_limits<double>::epsilon();
     return part * std::min(1.0, size) + rounding * std::abs(limit);
@@ -243,7 +243,7 @@ bool Axis::may_begin(const VelocityMotion& next, const Start& from) const {
     return !software_limits || leads_inside(next, from) || can_brake(total());
 }
 
-/// Of a table, with what is on top where that stays.
+/// The whole table stays inside, with what is on top where that stays.
 bool Axis::may_follow(const ProfileMotion& next, const Cam& cam, const Start& from) const {
     if (!software_limits) return true;
     const double further = from.drops_added ? 0 : added_goal - from.taken;

@@ -96,7 +96,7 @@ MotionError Axis::check_masters(const Context& context, const Coupling& c) const
 
 // What is foreseen.
 
-/// Of a motion that the axis has planned itself, t seconds after its scan.
+/// Where a motion is that the axis has planned itself, t seconds after its scan.
 MotionState Axis::planned(double t) const {
     MotionState s = doing == Doing::moving_to_point
                         ? point_motion.plan.at(point_motion.start.until(scan_time) + t)

@@ -9,7 +9,7 @@ bool is_bool_parameter(std::int64_t number) {
     return number == 4 || number == 5;
 }
 
-/// Of those that may be written; null: of no such.
+/// The one that may be written by this number; null: there is none.
 double* Axis::limit_of(std::int64_t number) {
     switch (number) {
         case 2:

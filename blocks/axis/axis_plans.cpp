@@ -33,7 +33,7 @@ Axis::Start Axis::start_of(const Request& request, bool drops_added) const {
     return from;
 }
 
-/// Of `active`, to plan it anew.
+/// Where `active` began, to plan it anew.
 Axis::Start Axis::start_again() const {
     Start from{base, origin};
     from.state.position += offset;

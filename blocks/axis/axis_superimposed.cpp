@@ -14,7 +14,7 @@ bool keeps_superimposed(const Request& request) {
            request.mode != BufferMode::aborting;
 }
 
-/// Of the one before stays what it has covered; the new distance counts from there.
+/// What the one before has covered stays; the new distance counts from there.
 void Axis::begin_added(const Context& context, const Moment& at, Job& job) {
     const bool halts = job.request.command == Command::halt_superimposed;
     if (halts && !added.exists()) return tell(job, Progress::done);

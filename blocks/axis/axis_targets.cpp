@@ -18,14 +18,14 @@ double Axis::target_of(const Request& request, const Start& from) const {
     return place_of(request, without) + further;
 }
 
-/// Of a command to a position.
+/// Where a command to a position leads.
 double Axis::place_of(const Request& request, const Start& from) const {
     if (request.period > 0) return modulo_target(request, from, request.period);
     return modulo && request.period == 0 ? modulo_target(request, from, period) : request.position;
 }
 
-/// Of the places that show the position one that the axis can reach without turning round, and
-/// behind it the whole turns that the command asks for. With a period of its own, TwinCAT's, one
+/// A place that shows the position and that the axis can reach without turning round, and behind
+/// it the whole turns that the command asks for. With a period of its own, TwinCAT's, one
 /// that begins in motion has none, and keeps its direction.
 double Axis::modulo_target(const Request& request, const Start& from, double turn) const {
     constexpr double tolerance = 1e-9;
@@ -45,7 +45,7 @@ double Axis::modulo_target(const Request& request, const Start& from, double tur
     return nearest_to(stop, request.position, turn);
 }
 
-/// Of the places that show a position, once each turn, the one next to a place.
+/// A position is shown once each turn: the place where it is that is next to another place.
 double Axis::nearest_to(double place, double shown_there, double turn) {
     return shown_there + turn * std::floor((place - shown_there) / turn + 0.5);
 }

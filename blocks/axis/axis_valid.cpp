@@ -97,7 +97,8 @@ bool counts_are_valid(const Axis& axis, const KeptState& machine) {
            is_axis(axis.counted_second);
 }
 
-/// Of the axis and all that it follows as it sees them. They may follow each other (Axis::follow).
+/// Looks at the axis and all that it follows as it sees them, which may follow each other
+/// (Axis::follow).
 bool masters_are_valid(const Axis& axis, const KeptState& machine) {
     std::vector<const Axis*> open{&axis};
     std::set<std::int64_t> seen;

@@ -179,7 +179,7 @@ ServoError ServoDrive::move(const SetPoint& wanted, double elapsed, bool homing)
     return ServoError::none;
 }
 
-/// Of a motor without a position loop.
+/// How a motor without a position loop moves.
 VelocityLoop::State ServoDrive::at_set_point(const SetPoint& wanted, double elapsed) const {
     const double made = velocity_between(motor.position, wanted.position, elapsed);
     return {wanted.position, has_velocity ? wanted.velocity : made, 0};

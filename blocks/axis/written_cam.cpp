@@ -12,16 +12,11 @@ namespace {
 
 constexpr std::string_view action_names[] = {"rest", "write", "complete", "evaluate", "measure"};
 
-std::span<const CamPoint> first_of(const CamTable::Points& points) {
+/// Those that are in use, of points that may be written or may not.
+auto first_of(auto& points) {
     const auto most = static_cast<std::int64_t>(most_cam_points);
-    return {points.rows.data(),
-            static_cast<std::size_t>(std::clamp<std::int64_t>(points.size, 0, most))};
-}
-
-std::span<CamPoint> first_of(CamTable::Points& points) {
-    const auto most = static_cast<std::int64_t>(most_cam_points);
-    return {points.rows.data(),
-            static_cast<std::size_t>(std::clamp<std::int64_t>(points.size, 0, most))};
+    return std::span(points.rows)
+        .first(static_cast<std::size_t>(std::clamp<std::int64_t>(points.size, 0, most)));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "blocks/path/path_polynomial.hpp"
+
 namespace lineshaft {
 
 namespace {
@@ -20,27 +22,12 @@ double segment_distance(Point a, Point b, Point p) {
     return length(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
-/// g[0] + g[1] t + .. + g[5] t^5
-using Quintic = std::array<double, 6>;
-
-double value(const Quintic& g, double t) {
-    double sum = 0;
-    for (std::size_t i = g.size(); i-- > 0;) sum = sum * t + g[i];
-    return sum;
-}
-
-Quintic derivative(const Quintic& g) {
-    Quintic d{};
-    for (std::size_t i = 1; i < g.size(); ++i) d[i - 1] = static_cast<double>(i) * g[i];
-    return d;
-}
-
 /// Where g changes its sign between `low` and `high`, by halves.
-double crossing(const Quintic& g, double low, double high) {
-    const bool rises = value(g, low) < 0;
+double crossing(const PathPolynomial& g, double low, double high) {
+    const bool rises = value_of(g, low) < 0;
     for (int i = 0; i < std::numeric_limits<double>::digits; ++i) {
         const double middle = (low + high) / 2;
-        ((value(g, middle) < 0) == rises ? low : high) = middle;
+        ((value_of(g, middle) < 0) == rises ? low : high) = middle;
     }
     return high;
 }
@@ -51,13 +38,13 @@ struct Crossings {
     std::array<double, 5> at{};
     std::size_t count = 0;
 
-    explicit Crossings(const Quintic& g, int degree = 5) {
+    explicit Crossings(const PathPolynomial& g, int degree = 5) {
         if (degree == 0) return;
-        const Crossings turns(derivative(g), degree - 1);
+        const Crossings turns(derivative_of(g), degree - 1);
         double low = 0;
         for (std::size_t i = 0; i <= turns.count; ++i) {
             const double high = i < turns.count ? turns.at[i] : 1;
-            if (!(value(g, low) * value(g, high) > 0)) at[count++] = crossing(g, low, high);
+            if (!(value_of(g, low) * value_of(g, high) > 0)) at[count++] = crossing(g, low, high);
             low = high;
         }
     }
@@ -69,7 +56,7 @@ double span_distance(const SplineSpan& span, Point p) {
         const Point s = span.at(t);
         return length(s.x - p.x, s.y - p.y);
     };
-    Quintic g{};  // of (s - p) s'
+    PathPolynomial g{};  // of (s - p) s'
     for (std::size_t i = 0; i < 4; ++i) {
         const Point s{c[i].x - (i == 0 ? p.x : 0), c[i].y - (i == 0 ? p.y : 0)};
         for (std::size_t k = 1; k < 4; ++k)

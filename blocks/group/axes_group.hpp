@@ -82,10 +82,10 @@ struct AxesGroup {
 
     std::string why(const Context&, const NameOf&) const { return std::string(text_of(error_id)); }
 
-    /// Of a command block: the job, or the end of its Execute, is put into the inbox.
+    /// A command block puts the job, or the end of its Execute, into the inbox.
     void send(const Context& context, const Scan& now, GroupJob& job);
 
-    /// Of the axes, by the drives where they have some; 0 where there is none.
+    /// Where the axes are, by their drives where they have some; 0 where there is none.
     PathVector actual_position(const Context& context) const;
     PathVector actual_velocity(const Context& context) const;
     PathVector set_position(const Context& context) const;

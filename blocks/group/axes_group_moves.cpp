@@ -191,7 +191,7 @@ MotionError AxesGroup::append(const Context& context, const GroupRequest& reques
     return motion_error_of(fault);
 }
 
-/// Of an axis the lesser of acceleration and deceleration counts for both ways, as of the path.
+/// The lesser of acceleration and deceleration counts for both ways, of an axis as of the path.
 PathLimits AxesGroup::limits_of(const Context& context, const GroupRequest& request) const {
     const auto chosen = [](double asked, double otherwise) {
         return asked < 0 ? otherwise : asked;

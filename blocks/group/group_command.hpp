@@ -44,7 +44,7 @@ std::vector<Field> dynamics();
 std::vector<Field> blending();
 /// CoordSystem.
 std::vector<Field> coordinate_system();
-/// Of a command that brakes.
+/// What a command has that brakes.
 std::vector<Field> braking();
 
 /// AxesGroup and Execute, `inputs`, Done, and the other outputs of all.

@@ -35,7 +35,7 @@ bool goes_on_cubic(const PathRows& table, std::size_t k) {
            goes_on(way(table, k - 1), way(table, k));
 }
 
-/// Of the cubic spline that row k is a part of: where that begins, or ends.
+/// Where the part that row k is of a cubic spline begins, or ends.
 PathKnot knot_of(const PathRows& table, std::size_t k, bool at_end) {
     const std::size_t at = k + (at_end ? 1 : 0);
     std::size_t first = k, last = k + 1;
@@ -46,7 +46,7 @@ PathKnot knot_of(const PathRows& table, std::size_t k, bool at_end) {
     return lineshaft::knot_of({points.data(), last - first + 1}, at - first);
 }
 
-/// Of a row that is no spline.
+/// What a row is that is no spline.
 PathFault curve_of(const PathTablePoint& row, const PathVector& from, PathCurve& out) {
     const PathVector to = row.target();
     if (row.kind != PathPointKind::arc) return line_to(from, to, out, path_space);

@@ -253,7 +253,7 @@ void append_stretch(Path& path, std::span<PathPiece> ring, const PathLimit& box,
     ++path.stretches;
 }
 
-/// Of the first three axes, to the end of a piece [u].
+/// The way of the first three axes, to the end of a piece [u].
 double way_behind(const PathPiece& piece) {
     return piece.way + piece.curve.way_at(piece.curve.length).way;
 }
@@ -344,7 +344,7 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     return false;
 }
 
-/// Of a state whose position counts from the start of the path.
+/// The motion at a state whose position counts from the start of the path.
 PathMotion motion_of(const Path& path, std::span<const PathPiece> ring, const MotionState& m) {
     PathMotion out;
     if (path.count == 0) return out;

@@ -76,7 +76,7 @@ std::size_t Chain::add(const PathOutlook& outlook, const PathPieces& pieces, con
     return legs;
 }
 
-/// Of the pieces behind `end` up to a place.
+/// There is room for the pieces behind `end` up to a place.
 bool Chain::has_room(const PathPieces& pieces, double to) {
     constexpr double most_intervals = 0.6 * most_speed_intervals;
     constexpr double most_rows = 0.7 * SpeedProblem::most_rows;

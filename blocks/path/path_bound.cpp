@@ -34,7 +34,7 @@ Sizes greatest_within(PathPolynomial p, double middle, double half) {
     return out;
 }
 
-/// Of x(m(s)) by the sizes of the derivatives of both (Faa di Bruno).
+/// Bounds x(m(s)) by the sizes of the derivatives of both (Faa di Bruno).
 PathBound composed(const Sizes& x, const Sizes& m) {
     const double a = m[1], b = m[2], c = m[3], d = m[4], e = m[5];
     return {x[1] * a, x[2] * a * a + x[1] * b, x[3] * a * a * a + 3 * x[2] * a * b + x[1] * c,

@@ -159,7 +159,7 @@ PathLimit box_on_arc(double V, double R, const PathLimit& axes, const PathLimit&
     return {V, A, std::min(most.jerk, J)};
 }
 
-/// Of boxes with several parts of the greatest velocity, the one with which a curve alone, from
+/// The one of boxes with several parts of the greatest velocity with which a curve alone, from
 /// stop to stop, is run along in the least time; all 0 where there is none.
 template <class Box>
 PathLimit soonest(double length, const Box& box_with) {

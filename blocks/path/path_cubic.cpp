@@ -1,19 +1,12 @@
 #include "blocks/path/path_cubic.hpp"
 
 #include <array>
-#include <cmath>
 
 namespace lineshaft {
 
 namespace {
 
 constexpr std::size_t most_knots = 2 * cubic_reach + 1;
-
-double chord(const PathVector& a, const PathVector& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < path_space; ++i) sum += (b[i] - a[i]) * (b[i] - a[i]);
-    return std::sqrt(sum);
-}
 
 PathVector slope(const PathVector& a, const PathVector& b, double width) {
     PathVector out{};
@@ -26,7 +19,7 @@ PathVector slope(const PathVector& a, const PathVector& b, double width) {
 PathPoint PathKnot::point() const {
     PathPoint out;
     out.position = position;
-    const double size = chord({}, first);
+    const double size = distance({}, first);
     for (std::size_t i = 0; i < most_path_axes; ++i) out.tangent[i] = first[i] / size;
     return out;
 }
@@ -36,7 +29,7 @@ PathKnot knot_of(std::span<const PathVector> points, std::size_t at) {
     std::array<double, most_knots> width{}, diagonal{};
     std::array<PathVector, most_knots> slopes{}, second{};
     for (std::size_t k = 0; k < last; ++k) {
-        width[k] = chord(points[k], points[k + 1]);
+        width[k] = distance(points[k], points[k + 1]);
         slopes[k] = slope(points[k], points[k + 1], width[k]);
     }
     // Elimination forwards, then second derivatives backwards.
@@ -60,7 +53,7 @@ PathKnot knot_of(std::span<const PathVector> points, std::size_t at) {
 
 std::size_t cubic_between(const PathKnot& from, const PathKnot& to,
                           std::span<PathCurve, most_spline_parts> out) {
-    const double width = chord(from.position, to.position);
+    const double width = distance(from.position, to.position);
     const auto scaled = [&](const PathKnot& knot) {
         PathPoint point;
         point.position = knot.position;

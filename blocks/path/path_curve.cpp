@@ -122,7 +122,7 @@ double rounding_of(double radius, double rounding) {
     return std::fmax(relative * radius, std::fmin(rounding, most * radius));
 }
 
-/// Of a line or an arc, also where that is before its end.
+/// A place on a line or an arc, also where that is before its end.
 PathVector place_on(PathCurve curve, double s) {
     curve.length = 2 * s;
     return curve.at(s).position;

@@ -36,7 +36,7 @@ std::array<PathVector, 2> plane_of(const PathCurve& corner) {
     return out;
 }
 
-/// Of the greatest velocity at which a point is passed without acceleration.
+/// The greatest velocity at which a point is passed without acceleration.
 double steady_velocity(const PathPoint& x, const PathLimits& limits) {
     double v = limits.path.velocity;
     for (std::size_t i = 0; i < most_path_axes; ++i) {

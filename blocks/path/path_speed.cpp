@@ -300,7 +300,7 @@ void SpeedProblem::add_pulls(std::size_t k, const Group& group, const Triple& su
     if (k + 1 < n) right[k + 1] -= pull(2);
 }
 
-/// Of five bands, to L D L^T; both ends stay.
+/// Five bands become L D L^T; both ends stay.
 bool SpeedProblem::factor() {
     std::array<double, most_speed_intervals>& d = diagonal;
     for (std::size_t k = 1; k + 1 < n; ++k) {

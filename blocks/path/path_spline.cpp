@@ -12,6 +12,12 @@
 
 namespace lineshaft {
 
+double distance(const PathVector& a, const PathVector& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path_space; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum);
+}
+
 namespace {
 
 using Polynomial = PathPolynomial;
@@ -32,17 +38,11 @@ Polynomial part_of(Polynomial p, double at, double width) {
     return out;
 }
 
-/// Of degree five, with value, slope and second derivative at 0 and at 1.
+/// It is of degree five, with value, slope and second derivative at 0 and at 1.
 Polynomial hermite(double p0, double d0, double b0, double p1, double d1, double b1) {
     const double P = p1 - p0 - d0 - 0.5 * b0, D = d1 - d0 - b0, B = b1 - b0;
     return {
         p0, d0, 0.5 * b0, 10 * P - 4 * D + 0.5 * B, -15 * P + 7 * D - B, 6 * P - 3 * D + 0.5 * B};
-}
-
-double distance(const PathVector& a, const PathVector& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < path_space; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return std::sqrt(sum);
 }
 
 double along(const PathVector& a, const PathVector& b) {

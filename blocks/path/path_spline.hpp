@@ -29,6 +29,9 @@ std::size_t quintic_between(const PathPoint& from, const PathPoint& to,
 /// there; likewise at the last one. Not where the way turns back.
 PathPoint waypoint(const PathVector& before, const PathVector& at, const PathVector& after);
 
+/// Between two points, in the first three axes [u].
+double distance(const PathVector& a, const PathVector& b);
+
 /// In the first three axes: b is against a, up to the sine 1e-6 of an angle.
 bool turns_back(const PathVector& a, const PathVector& b);
 

@@ -20,12 +20,6 @@ bool bit(std::int64_t byte, int number) {
     return (byte >> number & 1) != 0;
 }
 
-bool risen(bool now, bool& last) {
-    const bool edge = now && !last;
-    last = now;
-    return edge;
-}
-
 }  // namespace
 
 std::span<const Field> Pto::fields() {
@@ -109,12 +103,12 @@ std::optional<Misfit> Pto::misfit(const IsConstant& is_constant) const {
 void Pto::scan(const Scan&) {
     done = done && !told;
     told = done;
-    const bool executed = risen(execute, last_execute);
+    const bool executed = rising_edge(execute, last_execute);
     const bool ordered = job != last_job;
     last_job = job;
     command = Command::none;
     if (executed || ordered) take_instruction();
-    if (risen(stop, last_stop)) command = Command::halt;
+    if (rising_edge(stop, last_stop)) command = Command::halt;
 }
 
 void Pto::take_instruction() {

@@ -1,12 +1,8 @@
 #include "runtime/csv/csv_cells.hpp"
 
-namespace lineshaft {
+#include "runtime/source/letters.hpp"
 
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
+namespace lineshaft {
 
 /// The end of the cell that begins at `at`: its separator, or the end of the line.
 const char* cell_end(const char* at, const char* end, char separator) {
@@ -18,7 +14,7 @@ const char* cell_end(const char* at, const char* end, char separator) {
 
 /// What the cell holds, its quotes removed.
 std::string unquoted(std::string_view cell) {
-    cell = without_blanks(cell);
+    cell = trimmed(cell);
     if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
     std::string text;
     for (std::size_t i = 1; i + 1 < cell.size(); ++i) {

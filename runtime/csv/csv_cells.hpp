@@ -7,8 +7,6 @@
 
 namespace lineshaft {
 
-std::string_view without_blanks(std::string_view text);
-
 /// The end of the cell that begins at `at`: its separator, or the end of the line.
 const char* cell_end(const char* at, const char* end, char separator);
 

@@ -15,6 +15,7 @@
 #include "runtime/csv/csv_cells.hpp"
 #include "runtime/csv/csv_lines.hpp"
 #include "runtime/source/codes.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/source/yaml.hpp"
 
@@ -243,7 +244,7 @@ void CsvReader::select() {
 void CsvReader::rows() {
     while (lines_.next(line_)) {
         ++number_;
-        if (without_blanks(line_).empty()) {
+        if (trimmed(line_).empty()) {
             ++blank_;
             continue;
         }

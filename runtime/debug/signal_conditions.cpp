@@ -4,24 +4,9 @@
 #include <utility>
 
 #include "runtime/serve/desk.hpp"
+#include "runtime/source/letters.hpp"
 
 namespace lineshaft::debug {
-
-namespace {
-
-std::string trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(' ');
-    if (first == std::string_view::npos) return {};
-    return std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
-}
-
-Node node_of(const std::string& text) {
-    Node node;
-    node.text = text;
-    return node;
-}
-
-}  // namespace
 
 std::vector<std::string> SignalConditions::set(const std::vector<std::string>& texts) {
     conditions_.clear();
@@ -40,22 +25,22 @@ void SignalConditions::read(Condition& condition, Diagnostics& out) {
     static constexpr std::pair<std::string_view, Is> signs[] = {
         {">=", Is::at_least}, {"<=", Is::at_most}, {"<>", Is::unequal},
         {">", Is::above},     {"<", Is::below},    {"=", Is::equal}};
-    std::string name = trimmed(condition.text), value;
+    std::string name(trimmed(condition.text, " ")), value;
     std::size_t nearest = name.size();
     for (const auto& [sign, is] : signs)
         if (const std::size_t at = name.find(sign); at < nearest) {
             nearest = at;
             condition.is = is;
-            value = trimmed(std::string_view(name).substr(at + sign.size()));
+            value = trimmed(std::string_view(name).substr(at + sign.size()), " ");
         }
-    name = trimmed(name.substr(0, nearest));
+    name = trimmed(name.substr(0, nearest), " ");
     if (name == "time") {
         condition.is_of_time = true;
         condition.wanted = Reader(out).time(node_of(value)).value_or(0);
         return;
     }
     const bool is_negated = value.empty() && name.starts_with("NOT ");
-    if (is_negated) name = trimmed(name.substr(4));
+    if (is_negated) name = trimmed(name.substr(4), " ");
     Machine& machine = loaded_.linked.machine;
     const Connecting to{loaded_.program, loaded_.linked.net, machine, Reader(out)};
     const Node node = node_of(name);

@@ -29,14 +29,14 @@ KeptMemory::KeptMemory(Machine& machine, std::int64_t now)
 }
 
 void KeptMemory::find_links() {
-    std::vector<std::size_t> places;
+    std::vector<LinkedPart> parts;
     for (const BlockPlace& block : machine_.blocks) {
         if (!block.type->add_links) continue;
-        places.clear();
-        block.type->add_links(places, *block.type);
-        for (const std::size_t place : places)
+        parts.clear();
+        block.type->add_links(parts, *block.type);
+        for (const LinkedPart& part : parts)
             links_.push_back(block.live - machine_.memory.data() +
-                             static_cast<std::int64_t>(place));
+                             static_cast<std::int64_t>(part.place));
     }
     std::ranges::sort(links_);
 }

@@ -36,6 +36,11 @@ using IsConstant = std::function<bool(std::string_view field)>;
 
 struct KeptState;
 
+/// Bytes of a block that others link into their lists.
+struct LinkedPart {
+    std::size_t place = 0, bytes = 0;
+};
+
 /// The bytes of an instance, by its number.
 using InstanceAt = std::function<const std::byte*(std::int64_t instance)>;
 
@@ -67,8 +72,8 @@ struct BlockType {
     bool (*valid)(const std::byte* block, const KeptState& machine) = nullptr;
     /// Takes over of a kept state what outlives a scan, into a new block; or null: all of it.
     void (*take)(std::byte* block, const std::byte* kept, const void* context) = nullptr;
-    /// Places in a block that others link into their lists, as the Job of a command.
-    void (*add_links)(std::vector<std::size_t>& places, const BlockType& type) = nullptr;
+    /// What of a block others link into their lists, as the Job of a command.
+    void (*add_links)(std::vector<LinkedPart>& parts, const BlockType& type) = nullptr;
     /// A block that was retained when others were not forgets what it was linked with, where that
     /// is not linked with it. Or null.
     void (*mend_links)(std::byte* block, const KeptState& machine) = nullptr;
@@ -258,8 +263,9 @@ class Catalog {
     template <class Block>
     static constexpr auto add_links() -> decltype(BlockType::add_links) {
         if constexpr (requires { Block::linked_part; })
-            return [](std::vector<std::size_t>& places, const BlockType&) {
-                places.push_back(detail::offset_of(Block::linked_part));
+            return [](std::vector<LinkedPart>& parts, const BlockType&) {
+                parts.push_back(
+                    {detail::offset_of(Block::linked_part), sizeof(Block{}.*Block::linked_part)});
             };
         return nullptr;
     }

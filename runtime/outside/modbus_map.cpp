@@ -23,10 +23,6 @@ constexpr NamedType types[] = {{"int16", int16, 1},   {"uint16", uint16, 1}, {"i
                                {"uint32", uint32, 2}, {"int64", int64, 4},   {"uint64", uint64, 4},
                                {"real32", real32, 2}, {"real64", real64, 4}};
 
-bool has_bits(ModbusTable table) {
-    return table == ModbusTable::coils || table == ModbusTable::discrete_inputs;
-}
-
 bool may_be_written(ModbusTable table) {
     return table == ModbusTable::coils || table == ModbusTable::holding_registers;
 }

@@ -23,6 +23,11 @@ enum class RegisterType : std::uint8_t {
     real64
 };
 
+/// Others have registers.
+constexpr bool has_bits(ModbusTable table) {
+    return table == ModbusTable::coils || table == ModbusTable::discrete_inputs;
+}
+
 /// A signal in a table of Modbus.
 struct MappedSignal {
     int address = 0, count = 1;  ///< of its first bit or register; of them

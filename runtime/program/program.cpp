@@ -13,7 +13,7 @@
 #include "runtime/projects/plain_text.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
-#include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/st/library/test_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 
@@ -39,11 +39,6 @@ fs::path project_root(const fs::path& file) {
     return own;
 }
 
-bool lies_below(const fs::path& file, const fs::path& folder) {
-    const auto relative = file.lexically_relative(folder);
-    return !relative.empty() && *relative.begin() != "..";
-}
-
 Node unreadable() {
     Node node;
     node.kind = Node::Kind::map;
@@ -55,17 +50,6 @@ bool are_known(const Node& tasks) {
     return !tasks.entries.empty() && std::ranges::all_of(tasks.entries, [](const auto& task) {
         return is_identifier(task.first.text) && task.second.is_map();
     });
-}
-
-}  // namespace
-
-namespace {
-
-/// A text from the command line: it has no place.
-Node node_of(std::string_view text) {
-    Node node;
-    node.text = text;
-    return node;
 }
 
 /// What a source that is taken for a program is good for.
@@ -82,7 +66,7 @@ std::string use_of(const std::shared_ptr<const SourceFile>& source) {
 /// A file that no other word of it says to be a program.
 bool has_another_name(const SourceFile& file) {
     constexpr std::string_view endings[] = {"", ".yaml", ".yml", ".json"};
-    const std::string ending = lower(fs::path(file.path).extension().string());
+    const std::string ending = extension_of(file.path);
     return std::ranges::find(endings, ending) == std::end(endings) && !file.has_key("lineshaft:");
 }
 
@@ -115,7 +99,7 @@ Program ProgramReader::read(std::shared_ptr<const SourceFile> file) {
                                 "this is Structured Text, not a program", use_of(file));
         return std::move(program_);
     }
-    const std::string ending = lower(fs::path(file->path).extension().string());
+    const std::string ending = extension_of(file->path);
     if (ending == ".il") {
         read_.diagnostics().add(code::not_supported, {file, 1, 1, 1},
                                 "this is an instruction list, which is not read from a text",

@@ -9,6 +9,7 @@
 #include "runtime/projects/packages.hpp"
 #include "runtime/projects/solution.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 
 namespace lineshaft {
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_plcproj(const std::string& path) {
-    return lower(fs::path(path).extension().string()) == ".plcproj";
+    return extension_of(path) == ".plcproj";
 }
 
 /// Folders of projects of Automation Studio, where there are several.

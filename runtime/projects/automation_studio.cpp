@@ -13,6 +13,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 
@@ -153,7 +154,7 @@ class IecProgram {
 
     void add(const std::string& named, const XmlFile& list, pugi::xml_node file) {
         const Mark mark = list.mark_of_tag(file);
-        const std::string ending = lower(fs::path(named).extension().string());
+        const std::string ending = extension_of(named);
         if (ending == ".uam") return;  // which methods OPC UA sees
         if (ending == ".ld") return add_ladders(named, mark);
         if (ending != ".st" && ending != ".var") {
@@ -438,7 +439,7 @@ bool is_mapp_configuration(const fs::path& file) {
         const std::string name = lower(folder.string());
         return name.starts_with("mapp") || name.starts_with("exos");
     });
-    const std::string ending = lower(file.extension().string());
+    const std::string ending = extension_of(file);
     const bool is_named_so = ending.starts_with(".mp") || ending == ".axis";
     if (!is_named_so && !(is_of_mapp && is_of_hardware(file))) return false;
     return beginning_of(file).find("<Configuration") != std::string::npos;

@@ -9,6 +9,7 @@
 
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/reader.hpp"
 
 namespace lineshaft::projects {
@@ -28,7 +29,7 @@ constexpr std::pair<std::string_view, std::string_view> classes_of_system[] = {
     {"Win32EventClass", "{4ABEFBBF-6620-4349-91AD-E6110A3BE851}"}};
 
 constexpr bool is_hex(char c) {
-    return is_digit(c) || (lower(c) >= 'a' && lower(c) <= 'f');
+    return digit_of(c) < 16;
 }
 
 /// The GUID `{665BAD9E-6191-FEB1-F9FA-D5AD80AC3506}` as a value; empty: it is none.
@@ -129,24 +130,20 @@ class EventClasses {
     Excerpts types_, entries_, guids_;
 };
 
-bool ends_in(const fs::path& file, std::string_view ending) {
-    return lower(file.extension().string()) == ending;
-}
-
 std::vector<std::string> files_of(const fs::path& folder) {
     std::vector<std::string> files;
     std::error_code error;
     constexpr auto options = fs::directory_options::skip_permission_denied;
     for (fs::recursive_directory_iterator entry(folder, options, error), end;
          !error && entry != end; entry.increment(error))
-        if (ends_in(entry->path(), ".tmc")) files.push_back(entry->path().string());
+        if (extension_of(entry->path()) == ".tmc") files.push_back(entry->path().string());
     std::vector<std::string> above;
     bool is_of_project = false;
     for (fs::directory_iterator entry(folder / "..", error), end; !error && entry != end;
          entry.increment(error)) {
-        const bool is_solution = ends_in(entry->path(), ".tsproj");
+        const bool is_solution = extension_of(entry->path()) == ".tsproj";
         is_of_project = is_of_project || is_solution;
-        if (is_solution || ends_in(entry->path(), ".tmc"))
+        if (is_solution || extension_of(entry->path()) == ".tmc")
             above.push_back(entry->path().lexically_normal().string());
     }
     if (is_of_project) files.insert(files.end(), above.begin(), above.end());

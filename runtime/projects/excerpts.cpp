@@ -52,6 +52,11 @@ void PlacedFile::copy(Excerpts& to, Part part) const {
     to.copy(*this, part);
 }
 
+void Excerpts::copy_to(const PlacedFile& from, std::size_t& copied, std::size_t end) {
+    copy(from, {copied, end});
+    copied = end;
+}
+
 void Excerpts::copy(const PlacedFile& from, Part part) {
     if (part.begin == part.end) return;
     const auto copy_from = [&](std::size_t begin, bool is_copied) {

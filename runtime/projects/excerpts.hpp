@@ -48,6 +48,8 @@ class Excerpts {
   public:
     /// What stands there, as it stands.
     void copy(const PlacedFile& from, Part part);
+    /// What stands from `copied` on to `end`, which `copied` is then.
+    void copy_to(const PlacedFile& from, std::size_t& copied, std::size_t end);
     /// Words for what is at `place`.
     void write(std::string_view words, const Mark& place);
     /// What another has put together, behind what is there.

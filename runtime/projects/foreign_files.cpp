@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 
 namespace lineshaft::projects {
 
@@ -49,7 +50,7 @@ bool is_archive_of_tia(std::string_view ending) {
 }  // namespace
 
 std::optional<ForeignFile> foreign_file(const fs::path& file) {
-    const std::string ending = lower(file.extension().string());
+    const std::string ending = extension_of(file);
     if (is_archive_of_tia(ending))
         return ForeignFile{"a project of Siemens' TIA Portal, as it keeps it",
                            "export its blocks there: as SIMATIC SD documents, XML or SCL"};

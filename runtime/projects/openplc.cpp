@@ -10,6 +10,7 @@
 #include "runtime/projects/plcopen.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/st/syntax/cursor.hpp"
 #include "runtime/st/syntax/dialect.hpp"
@@ -33,10 +34,6 @@ fs::path project_of(const fs::path& file) {
         if (fs::exists(listed, unknown) && is_openplc_project(listed)) return listed;
         if (!at.has_relative_path()) return {};
     }
-}
-
-bool has_ending(const fs::path& file, std::string_view ending) {
-    return lower(file.extension().string()) == ending;
 }
 
 /// One element of the XML for each of a list.
@@ -226,7 +223,7 @@ class Declarations {
                 variables += fmt::format("<variable name=\"{}\"><type>{}</type></variable>",
                                          as_xml(p_.last().text), type);
         }
-        copy_to(text_.text().size());
+        made_.copy_to(text_, copied_, text_.text().size());
         return std::move(made_);
     }
 
@@ -235,19 +232,14 @@ class Declarations {
         return p_.is(Word::program_) || p_.is(Word::function_block_) || p_.is(Word::function_);
     }
 
-    void copy_to(std::size_t end) {
-        made_.copy(text_, {copied_, end});
-        copied_ = end;
-    }
-
     void move_address() {
         const st::Place at = p_.here().place;
         if (colon_.begin < copied_) return;
-        copy_to(colon_.begin);
+        made_.copy_to(text_, copied_, colon_.begin);
         made_.write(" ", at.mark());
         made_.copy(text_, {at.begin, p_.next().place.end});
         made_.write(" ", at.mark());
-        copy_to(at.begin);
+        made_.copy_to(text_, copied_, at.begin);
         copied_ = p_.next().place.end;
     }
 
@@ -319,7 +311,7 @@ void read_pins(const Reading& to, const SourceFile& file) {
     to.project.add(std::make_shared<const SourceFile>(std::move(made)));
     to.out.warn(code::not_supported, declarations.name().place.mark(),
                 fmt::format("'{}' is written in {}, so this does nothing", declarations.name().text,
-                            has_ending(file.path, ".py") ? "Python" : "C++"),
+                            extension_of(file.path) == ".py" ? "Python" : "C++"),
                 "write what the program needs of it in Structured Text");
 }
 
@@ -335,7 +327,8 @@ bool is_openplc_project(const fs::path& file) {
 
 bool is_openplc_pou(const fs::path& file) {
     constexpr std::string_view endings[] = {".st", ".ld", ".fbd", ".sfc", ".il", ".cpp", ".py"};
-    if (std::ranges::none_of(endings, [&](auto e) { return has_ending(file, e); })) return false;
+    if (std::ranges::none_of(endings, [&](auto e) { return extension_of(file) == e; }))
+        return false;
     const fs::path project = project_of(file);
     return !project.empty() &&
            file.string().starts_with((project.parent_path() / "pous" / "").string());
@@ -361,7 +354,7 @@ void read_openplc_project(const Reading& to, const std::string& path, const Mark
         for (fs::recursive_directory_iterator entry(fs::path(path).parent_path() / folder, error),
              end;
              !error && entry != end; entry.increment(error))
-            if (is_openplc_pou(entry->path()) || has_ending(entry->path(), ".st"))
+            if (is_openplc_pou(entry->path()) || extension_of(entry->path()) == ".st")
                 files.push_back(entry->path().string());
     std::ranges::sort(files);
     for (const std::string& file : files)
@@ -372,9 +365,9 @@ void read_openplc_project(const Reading& to, const std::string& path, const Mark
 void read_openplc_pou(const Reading& to, const std::string& path, const Mark& where) {
     const auto source = read_source(path, to.out, where, json_limits);
     if (!source) return;
-    if (has_ending(path, ".ld")) return read_ladder(to, source);
-    if (has_ending(path, ".cpp") || has_ending(path, ".py")) return read_pins(to, *source);
-    if (!has_ending(path, ".st"))
+    if (extension_of(path) == ".ld") return read_ladder(to, source);
+    if (extension_of(path) == ".cpp" || extension_of(path) == ".py") return read_pins(to, *source);
+    if (extension_of(path) != ".st")
         return to.out.add(code::not_supported, {source, 1, 1, 1},
                           "only ladders and Structured Text of OpenPLC Editor 4 are read",
                           "export the project as PLCopen XML");

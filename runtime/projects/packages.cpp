@@ -7,6 +7,7 @@
 #include "runtime/projects/drawings/rung_graphs.hpp"
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 
 namespace lineshaft::projects {
 
@@ -110,7 +111,7 @@ bool Packages::leave_out(const fs::path& file) {
     if (std::none_of(folder.begin(), folder.end(), in_logical)) return false;
     const std::string& beside = list_of(folder);
     const bool is_of_package = beside.find("<package") != beside.npos;
-    if (is_of_package && lower(file.extension().string()) == ".st") return true;
+    if (is_of_package && extension_of(file) == ".st") return true;
     for (fs::path at = file; !in_logical(at) && at.has_filename(); at = at.parent_path()) {
         const std::string& list = list_of(at.parent_path());
         if (!list.empty() && !is_listed(list, at.filename().string())) return true;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/st/syntax/dialect.hpp"
 
 namespace lineshaft::projects {
@@ -22,12 +23,6 @@ std::shared_ptr<const SourceFile> read_as(const SourceFile& source, std::string_
     SourceFile made = source;
     made.read_as = ending;
     return std::make_shared<const SourceFile>(std::move(made));
-}
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    if (begin == text.npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
 }
 
 }  // namespace
@@ -52,8 +47,8 @@ void leave_out_repeated_exports(std::vector<std::shared_ptr<const SourceFile>>& 
     constexpr std::size_t most_bytes = 1 << 30;  // that are compared
     std::vector<std::pair<std::string_view, std::size_t>> exports;
     for (std::size_t i = 0; i < sources.size(); ++i)
-        if (lower(fs::path(sources[i]->path).extension().string()) == ".exp")
-            exports.emplace_back(trimmed(sources[i]->text), i);
+        if (extension_of(sources[i]->path) == ".exp")
+            exports.emplace_back(trimmed(sources[i]->text, " \t\r\n"), i);
     std::ranges::stable_sort(exports, std::greater<>(),
                              [](const auto& e) { return e.first.size(); });
     std::vector<std::string_view> kept;

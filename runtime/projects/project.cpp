@@ -26,6 +26,7 @@
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/entries.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/st/library/binary_libraries.hpp"
 #include "runtime/st/library/test_sources.hpp"
@@ -35,10 +36,6 @@ namespace lineshaft::projects {
 namespace fs = std::filesystem;
 
 namespace {
-
-bool ends_with(const std::string& file, std::string_view ending) {
-    return lower(fs::path(file).extension().string()) == ending;
-}
 
 /// How the files of a library of B&R are read, by the list beside them; empty: it is none.
 std::string form_in_library(const fs::path& file) {
@@ -62,7 +59,7 @@ void read_text(const Reading& to, const std::string& path, const Mark& where) {
     if (!source) return;
     source = with_symbols(std::move(source));
     read_configuration(to, source);
-    if (ends_with(path, ".exp")) {
+    if (extension_of(path) == ".exp") {
         read_tasks_of_export(to, *source);
         read_plc_configuration(to, source);
     }
@@ -97,7 +94,7 @@ constexpr Form forms[] = {{".tcpou", read_twincat_object},  {".tcdut", read_twin
                           {".export", read_codesys_export}};
 
 const Form* form_of(const fs::path& file) {
-    const std::string ending = lower(file.extension().string());
+    const std::string ending = extension_of(file);
     const auto* form = std::ranges::find(forms, ending, &Form::ending);
     return form == std::end(forms) ? nullptr : form;
 }
@@ -132,7 +129,7 @@ bool is_test_file(const std::string& file) {
 
 /// Siemens' data blocks say what they are; other programs have databases whose names end alike.
 bool is_database(const std::string& file) {
-    if (!ends_with(file, ".db")) return false;
+    if (extension_of(file) != ".db") return false;
     std::string first(65'536, '\0');
     std::ifstream text(file, std::ios::binary);
     text.read(first.data(), static_cast<std::streamsize>(first.size()));
@@ -145,7 +142,7 @@ bool is_database(const std::string& file) {
 bool is_of_typst(const std::string& file) {
     constexpr const char* lists[] = {"Package.pkg", "package.pkg", "IEC.prg",    "ANSIC.prg",
                                      "IEC.lby",     "ANSIC.lby",   "Binary.lby", "binary.lby"};
-    if (!ends_with(file, ".typ")) return false;
+    if (extension_of(file) != ".typ") return false;
     std::error_code unknown;
     const fs::path folder = fs::path(file).parent_path();
     for (const char* list : lists)
@@ -157,7 +154,7 @@ bool is_of_typst(const std::string& file) {
 
 /// A table of exports, which linkers name as CoDeSys does its files.
 bool is_of_a_linker(const std::string& file) {
-    if (!ends_with(file, ".exp")) return false;
+    if (extension_of(file) != ".exp") return false;
     std::string first(256, ' ');
     std::ifstream bytes(file, std::ios::binary);
     bytes.read(first.data(), static_cast<std::streamsize>(first.size()));
@@ -188,7 +185,7 @@ bool is_built(const std::string& file) {
     std::error_code unknown;
     const fs::path folder = fs::path(file).parent_path();
     if (folder.filename() == "build" && has_editors_project(folder.parent_path())) return true;
-    if (!ends_with(file, ".st")) return false;
+    if (extension_of(file) != ".st") return false;
     if (fs::path(file).filename() == "generated_plc.st")
         return fs::exists(folder / "plc.st", unknown);
     if (!has_editors_project(folder)) return false;
@@ -217,8 +214,8 @@ void leave_to_projects(std::vector<std::string>& files) {
     std::vector<std::string> folders, programs;
     for (const std::string& file : files) {
         const std::string folder = (fs::path(file).parent_path() / "").string();
-        if (ends_with(file, ".plcproj")) folders.push_back(folder);
-        if (ends_with(file, ".prg")) programs.push_back(folder);
+        if (extension_of(file) == ".plcproj") folders.push_back(folder);
+        if (extension_of(file) == ".prg") programs.push_back(folder);
     }
     std::erase_if(files, [&](const std::string& file) {
         const Form* form = form_of(file);

@@ -29,7 +29,7 @@ class Document {
                 finish_block();
         }
         finish_block();
-        copy_to(text_.text().size());
+        made_.copy_to(text_, copied_, text_.text().size());
         return made_.finish(text_.file()->path, text_.file()->part, out_);
     }
 
@@ -38,11 +38,6 @@ class Document {
         using enum Word;
         return word == end_function_ || word == end_function_block_ ||
                word == end_organization_block_;
-    }
-
-    void copy_to(std::size_t end) {
-        made_.copy(text_, {copied_, end});
-        copied_ = end;
     }
 
     /// `count, more : Int` is noted.
@@ -60,7 +55,7 @@ class Document {
 
     /// Variables stand before the first of a block, and what is said of that.
     void read_network() {
-        if (++network_ == 1) copy_to(begin_of_network());
+        if (++network_ == 1) made_.copy_to(text_, copied_, begin_of_network());
         const st::Token word = p_.take();
         if (!p_.says("rung") && !p_.says("label")) return;
         networks_.copy(text_, {copied_, word.place.end});

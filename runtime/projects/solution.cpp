@@ -8,6 +8,7 @@
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/yaml.hpp"
 #include "runtime/st/syntax/token.hpp"
 
@@ -16,10 +17,6 @@ namespace lineshaft::projects {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string ending_of(const fs::path& file) {
-    return lower(file.extension().string());
-}
 
 /// A namespace is a name: `LCLS General` is LCLS_General where nothing else is said.
 std::string as_name(std::string text) {
@@ -50,7 +47,7 @@ void follow_solution(std::vector<std::string>& to, const std::string& path, int 
             const std::size_t end = line.find('"', at + 1);
             if (end == line.npos) break;
             const std::string named(line.substr(at + 1, end - at - 1));
-            if (is_solution(named) || ending_of(named) == ".plcproj")
+            if (is_solution(named) || extension_of(named) == ".plcproj")
                 follow(to, path_beside(path, named), levels);
             at = end;
         }
@@ -72,9 +69,9 @@ void follow_elements(std::vector<std::string>& to, const XmlFile& file, pugi::xm
 }
 
 void follow(std::vector<std::string>& to, const std::string& path, int levels) {
-    if (ending_of(path) == ".plcproj") return add_plcproj(to, path);
+    if (extension_of(path) == ".plcproj") return add_plcproj(to, path);
     if (levels == 0) return;
-    if (ending_of(path) == ".sln") return follow_solution(to, path, levels - 1);
+    if (extension_of(path) == ".sln") return follow_solution(to, path, levels - 1);
     Diagnostics unread;
     if (const auto file = XmlFile::read(path, unread))
         follow_elements(to, *file, file->root(), levels - 1);
@@ -111,7 +108,7 @@ ProjectNames names_of_plcproj(const std::string& path) {
 
 bool is_solution(const fs::path& file) {
     constexpr std::string_view endings[] = {".sln", ".tsproj", ".tspproj", ".xti"};
-    return std::ranges::find(endings, ending_of(file)) != std::end(endings);
+    return std::ranges::find(endings, extension_of(file)) != std::end(endings);
 }
 
 std::vector<std::string> plcprojs_of(const std::string& solution) {

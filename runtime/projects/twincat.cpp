@@ -14,6 +14,7 @@
 #include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 #include "runtime/st/syntax/list_properties.hpp"
 #include "runtime/st/syntax/words.hpp"
@@ -251,7 +252,7 @@ std::string before_comma(const std::string& reference) {
 
 /// A project does not list projects.
 bool is_same_form(const fs::path& a, const fs::path& b) {
-    return lower(a.extension().string()) == lower(b.extension().string());
+    return extension_of(a) == extension_of(b);
 }
 
 /// MSBuild writes `%28` for a bracket in a name.

@@ -10,6 +10,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/source/encoding.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/utf8.hpp"
 #include "runtime/source/yaml.hpp"
 
@@ -73,13 +74,6 @@ void take_apart(std::string_view text, Plain plain, Character character) {
         from = at += bytes;
     }
     if (from < text.size()) plain(from, text.size());
-}
-
-std::string without_blanks(std::string text) {
-    constexpr std::string_view blanks = " \t\r\n";
-    text.erase(0, std::min(text.find_first_not_of(blanks), text.size()));
-    text.erase(text.find_last_not_of(blanks) + 1);
-    return text;
 }
 
 /// UTF-16 without a byte order mark is known by its first `<`.
@@ -229,7 +223,7 @@ std::string XmlFile::plain(Part part) const {
 std::string XmlFile::plain(pugi::xml_node element) const {
     std::string meant;
     for (const Part part : texts(element)) meant += plain(part);
-    return without_blanks(std::move(meant));
+    return std::string(trimmed(meant, " \t\r\n"));
 }
 
 void XmlFile::copy(Excerpts& to, Part part) const {

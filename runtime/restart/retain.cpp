@@ -75,12 +75,6 @@ bool is_admitted(const Value& value, const Signal& signal, const Machine& machin
     return block.type->fields[static_cast<std::size_t>(signal.port.field)].admits(value);
 }
 
-std::string hexadecimal(const Bytes& bytes) {
-    std::string text;
-    for (const std::byte byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned>(byte));
-    return text;
-}
-
 /// Empty for what is not that many bytes.
 Bytes bytes_of(const Json& block, const char* key, std::size_t size) {
     if (!block.contains(key) || !block[key].is_string()) return {};
@@ -128,7 +122,7 @@ Json json_of(const RetainedVariable& kept) {
             if (kept.type->is_unsigned_64()) return static_cast<std::uint64_t>(number);
             return number;
     }
-    return {{"bytes", hexadecimal({kept.live, kept.live + kept.size})}};
+    return {{"bytes", hexadecimal({kept.live, kept.size})}};
 }
 
 /// Empty for what cannot be one.

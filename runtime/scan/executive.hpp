@@ -104,7 +104,7 @@ class Executive {
     bool run_until(std::int64_t time);
     RunResult finish();
 
-    /// Of an observer, or of a block that is looked at: run_until() is to return when the instant
+    /// An observer asks, or a block that is looked at: run_until() is to return when the instant
     /// under way has passed; asked again, it goes on.
     void hold();
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/model/scan.hpp"
 #include "runtime/names/signal_list.hpp"
 #include "runtime/run/signal_json.hpp"
 #include "runtime/source/codes.hpp"
@@ -21,10 +22,6 @@ ApiReply too_much() {
     return failure(503, "the machine has too much to do", "try again");
 }
 
-double seconds_of(std::int64_t time) {
-    return static_cast<double>(time) / 1e9;
-}
-
 ApiReply mistake(const Diagnostics& out) {
     const Diagnostic& first = out.list().front();
     return failure(400, first.message, first.help, first.code);
@@ -39,7 +36,7 @@ Json state_json(const LiveState& state, const Loaded& loaded) {
     for (const auto& [name, value] : state.forced) forced[name] = value;
     return {
         {"program", loaded.program.title},
-        {"time_s", seconds_of(state.time)},
+        {"time_s", seconds(state.time)},
         {"time_ns", state.time},
         {"speed", state.speed == Pacer::unpaced ? Json("max") : Json(state.speed)},
         {"paused", state.paused},
@@ -68,9 +65,7 @@ bool is_traced(const Linked& linked, const Signal& signal) {
 }
 
 std::optional<std::int64_t> time_of(const std::string& text, Diagnostics& out) {
-    Node node;
-    node.text = text;
-    return Reader(out).time(node);
+    return Reader(out).time(node_of(text));
 }
 
 /// What a client has calculated in seconds is seldom a whole number of nanoseconds: the nearest.
@@ -306,7 +301,7 @@ ApiReply Api::values(const ApiRequest& request) {
     for (std::size_t i = 0; i < signals.size(); ++i)
         values[signals[i]->name] = to_json(*signals[i], moment->values[i]);
     return {200,
-            {{"time_s", seconds_of(moment->time)}, {"time_ns", moment->time}, {"values", values}}};
+            {{"time_s", seconds(moment->time)}, {"time_ns", moment->time}, {"values", values}}};
 }
 
 ApiReply Api::stream(const ApiRequest& request) {
@@ -338,7 +333,7 @@ ApiReply Api::change(Change::Kind kind, const std::vector<Wanted>& wanted) {
     if (const std::string error = live_.keep(*applied); !error.empty())
         return failure(507, "this counts, but is not in the recording: " + error, help,
                        code::recording_cannot_be_written);
-    return {200, {{"time_s", seconds_of(applied->at)}, {"time_ns", applied->at}}};
+    return {200, {{"time_s", seconds(applied->at)}, {"time_ns", applied->at}}};
 }
 
 ApiReply Api::set(const ApiRequest& request) {

@@ -1,7 +1,6 @@
 #include "runtime/serve/audit.hpp"
 
 #include <chrono>
-#include <cstring>
 
 #include <fmt/chrono.h>
 #include <nlohmann/json.hpp>
@@ -28,11 +27,7 @@ Audit::Audit(World& world, std::string path) : path_(std::move(path)) {
     file_ = world.open(path_, true, error);
     if (file_ && error == 0) error = file_->lock();
     if (file_ && error == 0) error = file_->truncate(file_->size());
-    if (error != 0) error_ = failure(error);
-}
-
-std::string Audit::failure(int error) const {
-    return fmt::format("cannot write '{}': {}", path_, std::strerror(error));
+    if (error != 0) error_ = cannot_write(path_, error);
 }
 
 std::string Audit::error() const {
@@ -52,7 +47,7 @@ void Audit::note(const AuditEntry& entry) {
     const std::lock_guard lock(mutex_);
     std::size_t written = 0;
     const int error = file_ ? file_->append(text, written) : 0;
-    if (error != 0) error_ = failure(error);
+    if (error != 0) error_ = cannot_write(path_, error);
 }
 
 }  // namespace lineshaft

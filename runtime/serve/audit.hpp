@@ -28,8 +28,6 @@ class Audit {
     void note(const AuditEntry& entry);
 
   private:
-    std::string failure(int error) const;
-
     const std::string path_;
     std::unique_ptr<GrowingFile> file_;
     mutable std::mutex mutex_;

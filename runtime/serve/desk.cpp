@@ -13,12 +13,6 @@ namespace lineshaft {
 
 namespace {
 
-Node node_of(std::string text) {
-    Node node;
-    node.text = std::move(text);
-    return node;
-}
-
 std::optional<Target> target_of(const Connecting& to, Change::Kind kind, const Node& signal) {
     switch (kind) {
         case Change::Kind::set:

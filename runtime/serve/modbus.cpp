@@ -6,22 +6,13 @@
 
 #include "runtime/serve/modbus_request.hpp"
 #include "runtime/serve/registers.hpp"
+#include "runtime/source/text_hash.hpp"
 
 namespace lineshaft {
 
 namespace {
 
 using enum ModbusException;
-
-bool has_bits(ModbusTable table) {
-    return table == ModbusTable::coils || table == ModbusTable::discrete_inputs;
-}
-
-std::string in_hexadecimal(std::string_view bytes) {
-    std::string text;
-    for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-    return text;
-}
 
 /// The number of bytes, and the bits from the lowest on, or the registers.
 std::string packed(std::span<const std::uint16_t> words, bool are_bits) {
@@ -51,7 +42,7 @@ std::string ModbusDesk::answer(std::string_view bytes, const ModbusPeer& peer) {
     if (exception == none) exception = carry_out(request, data, at);
     if (audit_ && is_write)
         audit_->note(
-            {peer.address, "Modbus", in_hexadecimal(bytes),
+            {peer.address, "Modbus", hexadecimal(std::as_bytes(std::span(bytes))),
              exception == none ? "done" : fmt::format("exception {}", static_cast<int>(exception)),
              at});
     if (exception == none) return std::string(bytes.substr(0, 1)) + data;

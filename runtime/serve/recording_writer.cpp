@@ -1,7 +1,6 @@
 #include "runtime/serve/recording_writer.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -101,7 +100,7 @@ bool RecordingWriter::take(const std::string& path, bool goes_on) {
     int error = 0;
     file_ = world_.open(path, !goes_on, error);
     if (!file_) {
-        error_ = failure(error);
+        error_ = cannot_write(path_, error);
         return false;
     }
     if (file_->lock() != 0) {
@@ -116,7 +115,7 @@ bool RecordingWriter::take(const std::string& path, bool goes_on) {
     }
     const std::string end = file_->read(std::max<std::int64_t>(size - std::int64_t{most}, 0), most);
     if (!end.ends_with(the_end) && !end.ends_with(no_entry)) return false;
-    if (const int failed = file_->truncate(0); failed != 0) error_ = failure(failed);
+    if (const int failed = file_->truncate(0); failed != 0) error_ = cannot_write(path_, failed);
     return error_.empty();
 }
 
@@ -124,12 +123,8 @@ bool RecordingWriter::take(const std::string& path, bool goes_on) {
 void RecordingWriter::begin(const std::string& text) {
     std::size_t written = 0;
     const int error = file_->append(text, written);
-    if (error != 0) error_ = failure(error);
+    if (error != 0) error_ = cannot_write(path_, error);
     appended_ = kept_ = std::ssize(text);
-}
-
-std::string RecordingWriter::failure(int error) const {
-    return fmt::format("cannot write '{}': {}", path_, std::strerror(error));
 }
 
 std::string RecordingWriter::error() const {
@@ -177,7 +172,7 @@ void RecordingWriter::restore(StateReader& in) {
     if (file_->size() < appended_)
         error_ = fmt::format("'{}' is not the recording of the checkpoint", path_);
     else if (const int error = file_->truncate(appended_); error != 0)
-        error_ = failure(error);
+        error_ = cannot_write(path_, error);
     is_broken_ = !error_.empty();
 }
 
@@ -207,7 +202,7 @@ void RecordingWriter::work() {
             }
         }
         lock.lock();
-        error_ = error != 0 ? failure(error) : "";
+        error_ = error != 0 ? cannot_write(path_, error) : "";
         if (!is_broken_) kept_ += static_cast<std::int64_t>(count);
         changed_.notify_all();
     }

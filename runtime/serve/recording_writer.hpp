@@ -78,7 +78,6 @@ class RecordingWriter : public Observer {
     bool take(const std::string& path, bool goes_on);
     void begin(const std::string& text);
     void work();
-    std::string failure(int error) const;
 
     World& world_;
     std::string path_;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <limits>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <netdb.h>
 #include <poll.h>
 #include <sys/file.h>
@@ -120,6 +122,10 @@ class SystemWorld final : public World {
 };
 
 }  // namespace
+
+std::string cannot_write(const std::string& path, int error) {
+    return fmt::format("cannot write '{}': {}", path, std::strerror(error));
+}
 
 World& World::system() {
     static SystemWorld world;

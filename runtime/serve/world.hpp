@@ -48,6 +48,9 @@ class GrowingFile {
     virtual int flush() = 0;                      ///< to the disk
 };
 
+/// Why there are lines missing in a file, by an error of errno.
+std::string cannot_write(const std::string& path, int error);
+
 /// What serving takes of the world outside: its clock, threads and files. The system's, but for
 /// tests, which play one in virtual time.
 class World {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/utf8.hpp"
 
 namespace lineshaft {
@@ -109,13 +110,13 @@ static bool is_among(std::span<const std::string_view> endings, std::string_view
 bool is_structured_text(const std::filesystem::path& file) {
     static constexpr std::string_view of_vendors[] = {".scl", ".s7dcl", ".udt", ".db",
                                                       ".exp", ".typ",   ".var", ".fun"};
-    const std::string extension = lower(file.extension().string());
+    const std::string extension = extension_of(file);
     return is_among(standard_endings, extension) || is_among(of_vendors, extension) ||
            (has_name_of_any_text(file) && is_text_with_unit(file));
 }
 
 bool has_name_of_any_text(const std::filesystem::path& file) {
-    return is_among(any_text_endings, lower(file.extension().string()));
+    return is_among(any_text_endings, extension_of(file));
 }
 
 std::string as_utf8(std::string bytes) {

@@ -51,14 +51,9 @@ constexpr Operator words[] = {
 constexpr Operator signs[] = {{" * ", "mul"}, {"*", "mul"},   {" / ", "div"},
                               {"/", "div"},   {" + ", "add"}, {" - ", "sub"}};
 
-std::string_view trimmed(std::string_view text) {
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    return text.substr(0, text.find_last_not_of(' ') + 1);
-}
-
 /// A number, a parameter or a signal, and not part of a unit.
 bool is_operand(std::string_view text) {
-    text = trimmed(text);
+    text = trimmed(text, " ");
     const std::string_view word = text.substr(0, text.find(' '));
     return !text.empty() && (is_digit(text.front()) || text.front() == '$' || split_signal(word));
 }
@@ -207,12 +202,12 @@ std::optional<LookAlike> find_look_alike(std::string_view text) {
 }
 
 std::string expression_help(std::string_view text) {
-    text = trimmed(text);
+    text = trimmed(text, " ");
     for (const std::string_view bound : {">", "<"})
         if (text.starts_with(bound))
             return fmt::format(
                 "a bound is written {}: {}", bound == ">" ? "at_least" : "at_most",
-                trimmed(text.substr(std::min(text.find_first_not_of("<>="), text.size()))));
+                trimmed(text.substr(std::min(text.find_first_not_of("<>="), text.size())), " "));
     if (text.starts_with('!') && split_signal(text.substr(1)))
         return fmt::format("write NOT {}", text.substr(1));
     const Operator* found = find_operator(text);

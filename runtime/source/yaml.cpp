@@ -83,6 +83,12 @@ const Node* Node::find(std::string_view key) const {
     return found == entries.end() ? nullptr : &found->second;
 }
 
+Node node_of(std::string text) {
+    Node node;
+    node.text = std::move(text);
+    return node;
+}
+
 std::vector<std::string> Node::keys() const {
     std::vector<std::string> names;
     names.reserve(entries.size());

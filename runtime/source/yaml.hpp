@@ -49,6 +49,9 @@ struct Node {
     std::vector<std::string> keys() const;
 };
 
+/// A scalar that stands in no file: what the command line or a client says.
+Node node_of(std::string text);
+
 struct YamlLimits {
     std::size_t bytes = 1 << 20;
     std::size_t nodes = 100'000;

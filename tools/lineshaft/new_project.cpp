@@ -12,6 +12,7 @@
 #include "runtime/program/whole_project.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/source/yaml_text.hpp"
 #include "runtime/st/library/used_sources.hpp"
 #include "runtime/st/syntax/dialect.hpp"
@@ -152,13 +153,13 @@ std::string path_from(const std::filesystem::path& file, const std::string& path
 std::optional<std::string> solution_of(const std::string& path) {
     constexpr int most_above = 3;
     namespace fs = std::filesystem;
-    if (lower(fs::path(path).extension().string()) != ".plcproj") return {};
+    if (extension_of(path) != ".plcproj") return {};
     fs::path folder = fs::path(path).parent_path();
     for (int i = 0; i <= most_above; ++i, folder /= "..") {
         const fs::path here = folder.empty() ? "." : folder.lexically_normal();
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(here, error))
-            if (lower(entry.path().extension().string()) == ".sln") return here.string();
+            if (extension_of(entry.path()) == ".sln") return here.string();
     }
     return {};
 }

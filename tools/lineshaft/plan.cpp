@@ -13,6 +13,7 @@
 
 #include "blocks/profile/any_state.hpp"
 #include "blocks/profile/seven_segment.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/number_text.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -222,37 +223,33 @@ std::string read_cells(std::string_view line, const Header& header, Cells& cells
 class Planner {
   public:
     Planner(std::string file, const PlanOptions& options)
-        : file_(std::move(file)), options_(options) {}
+        : lines_(std::move(file)), options_(options) {}
 
     /// One line, without its newline. False when no further line can be understood.
     bool line(std::string_view text, bool too_long, std::string& rows);
     /// Without a header there is nothing to plan.
     void finish(std::string& rows);
     bool has_header() const { return header_.form != nullptr; }
-    bool any_mistake() const { return mistakes_; }
+    bool any_mistake() const { return lines_.any_mistake(); }
 
   private:
     bool header(std::string_view text, std::string& rows);
-    void mistake(const std::string& what);
 
-    std::string file_;
+    CountedLines lines_;
     PlanOptions options_;
     Header header_;
-    std::size_t number_ = 0, row_ = 0;
-    bool mistakes_ = false;
+    std::size_t row_ = 0;
 };
 
 bool Planner::line(std::string_view text, bool too_long, std::string& rows) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (++number_ == 1 && text.starts_with(byte_order_mark))
-        text.remove_prefix(byte_order_mark.size());
-    if (!too_long && trimmed(text).empty()) return true;
+    text = lines_.take(text);
+    if (!too_long && trimmed(text, blanks).empty()) return true;
     if (!has_header()) return header(text, rows);
     Cells cells;
     const std::string wrong = too_long
                                   ? fmt::format("the line has {} characters or more", longest_line)
                                   : read_cells(text, header_, cells);
-    if (!wrong.empty()) mistake(wrong);
+    if (!wrong.empty()) lines_.mistake(wrong);
     header_.form->append(rows, ++row_, wrong.empty() ? &cells : nullptr, options_);
     return true;
 }
@@ -260,7 +257,7 @@ bool Planner::line(std::string_view text, bool too_long, std::string& rows) {
 bool Planner::header(std::string_view text, std::string& rows) {
     Header read;
     if (const std::string wrong = read.read(text); !wrong.empty()) {
-        mistake(wrong);
+        lines_.mistake(wrong);
         return false;
     }
     header_ = std::move(read);
@@ -269,14 +266,8 @@ bool Planner::header(std::string_view text, std::string& rows) {
 }
 
 void Planner::finish(std::string&) {
-    if (has_header() || mistakes_) return;
-    number_ = 1;
-    mistake("the header is missing; the first line names " + all_names());
-}
-
-void Planner::mistake(const std::string& what) {
-    fmt::print(stderr, "{}:{}: error: {}\n", file_, number_, what);
-    mistakes_ = true;
+    if (has_header() || lines_.any_mistake()) return;
+    lines_.mistake_of_header("the header is missing; the first line names " + all_names());
 }
 
 template <class Planner>

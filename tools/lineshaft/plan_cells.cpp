@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/source/number_text.hpp"
 #include "tools/lineshaft/command.hpp"
 
@@ -15,18 +16,28 @@ namespace {
 
 /// A cell without blanks and quotes around it.
 std::string_view bare(std::string_view cell) {
-    cell = trimmed(cell);
+    cell = trimmed(cell, blanks);
     if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return cell;
-    return trimmed(cell.substr(1, cell.size() - 2));
+    return trimmed(cell.substr(1, cell.size() - 2), blanks);
 }
 
 }  // namespace
 
-std::string_view trimmed(std::string_view text) {
-    constexpr const char* blanks = " \t\r";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+std::string_view CountedLines::take(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (++number_ == 1 && text.starts_with(byte_order_mark))
+        text.remove_prefix(byte_order_mark.size());
+    return text;
+}
+
+void CountedLines::mistake(const std::string& what) {
+    fmt::print(stderr, "{}:{}: error: {}\n", file_, number_, what);
+    mistakes_ = true;
+}
+
+void CountedLines::mistake_of_header(const std::string& what) {
+    number_ = 1;
+    mistake(what);
 }
 
 std::optional<std::string_view> next_cell(std::optional<std::string_view>& rest) {

@@ -11,8 +11,8 @@ namespace lineshaft::bulk {
 
 inline constexpr std::size_t longest_line = 65536;
 
-/// Without blanks around it, and the return before its newline.
-std::string_view trimmed(std::string_view text);
+/// What may stand around a cell, with the return before the line's newline.
+inline constexpr std::string_view blanks = " \t\r";
 
 /// Takes the first cell off `rest`, without blanks and quotes around it; nothing when there is
 /// none.
@@ -23,6 +23,24 @@ std::string read_number(std::string_view cell, std::string_view column, double& 
 
 /// `,` and the number.
 void append_number(std::string& text, double value);
+
+/// Counts the lines of a file, and tells what is wrong with the one at hand.
+class CountedLines {
+  public:
+    explicit CountedLines(std::string file) : file_(std::move(file)) {}
+
+    /// The next one, without the byte order mark before the first.
+    std::string_view take(std::string_view text);
+    void mistake(const std::string& what);
+    /// What is wrong with the header, when all has been read.
+    void mistake_of_header(const std::string& what);
+    bool any_mistake() const { return mistakes_; }
+
+  private:
+    std::string file_;
+    std::size_t number_ = 0;
+    bool mistakes_ = false;
+};
 
 /// Reads what is there of a file or a pipe, and cuts it into lines, in constant memory. A line that
 /// is too long is cut at its beginning.

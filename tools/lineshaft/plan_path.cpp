@@ -10,6 +10,7 @@
 #include "blocks/group/axes_group.hpp"
 #include "blocks/path/path_cubic.hpp"
 #include "runtime/source/input_file.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/source/units.hpp"
 #include "tools/lineshaft/plan_cells.hpp"
 
@@ -129,19 +130,17 @@ void take_limits(PathOptions& options, std::string& input) {
 }
 
 PathPlanner::PathPlanner(std::string file, const PathOptions& options)
-    : file_(std::move(file)),
+    : lines_(std::move(file)),
       options_(options),
       limits_(limits_of(options.limits)),
       ring_(AxesGroup::look_ahead) {}
 
 bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (++number_ == 1 && text.starts_with(byte_order_mark))
-        text.remove_prefix(byte_order_mark.size());
-    if (!too_long && trimmed(text).empty()) return true;
+    text = lines_.take(text);
+    if (!too_long && trimmed(text, blanks).empty()) return true;
     if (!has_header_) {
         const std::string wrong = too_long ? "the line is too long" : read_header(text);
-        if (!wrong.empty()) mistake(wrong);
+        if (!wrong.empty()) lines_.mistake(wrong);
         has_header_ = wrong.empty();
         if (has_header_)
             rows += options_.every > 0
@@ -155,7 +154,7 @@ bool PathPlanner::line(std::string_view text, bool too_long, std::string& rows) 
     const std::string wrong = too_long
                                   ? fmt::format("the line has {} characters or more", longest_line)
                                   : read_point(text, point, name);
-    if (!wrong.empty()) mistake(wrong);
+    if (!wrong.empty()) lines_.mistake(wrong);
     if (name_ && *name_ != name) end(rows);
     take(point, name, !wrong.empty(), rows);
     return true;
@@ -197,13 +196,14 @@ std::string PathPlanner::read_quantity(std::string_view cell, std::size_t column
                       end = cell.rfind(' ') != cell.npos ? cell.rfind(' ') : digit + 1;
     const bool has_unit = is_word && end != 0 && end < cell.size() &&
                           (cell[end] == ' ' || Unit::parse(std::string(cell.substr(end))));
-    const std::string unit(has_unit ? trimmed(cell.substr(end)) : "");
+    const std::string unit(has_unit ? trimmed(cell.substr(end), blanks) : "");
     units_.resize(columns.size());
     if (units_[column].value_or(unit) != unit)
         return fmt::format("'{}' in column {} has another unit than the rows above", cell,
                            columns[column]);
     units_[column] = unit;
-    return read_number(has_unit ? trimmed(cell.substr(0, end)) : cell, columns[column], value);
+    return read_number(has_unit ? trimmed(cell.substr(0, end), blanks) : cell, columns[column],
+                       value);
 }
 
 /// Tells also of a line that is wrong which path it is of.
@@ -335,21 +335,16 @@ void PathPlanner::end(std::string& rows) {
         }
         rows += '\n';
     } else if (!ok) {
-        mistake(fmt::format("the path {} cannot be planned: {}", *name_, why));
+        lines_.mistake(fmt::format("the path {} cannot be planned: {}", *name_, why));
     }
     name_.reset();
 }
 
 void PathPlanner::finish(std::string& rows) {
     if (has_header_) return end(rows);
-    if (mistakes_) return;
-    number_ = 1;
-    mistake("the header is missing; the first line names position1, position2, ...");
-}
-
-void PathPlanner::mistake(const std::string& what) {
-    fmt::print(stderr, "{}:{}: error: {}\n", file_, number_, what);
-    mistakes_ = true;
+    if (lines_.any_mistake()) return;
+    lines_.mistake_of_header(
+        "the header is missing; the first line names position1, position2, ...");
 }
 
 }  // namespace lineshaft

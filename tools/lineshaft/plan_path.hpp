@@ -10,6 +10,7 @@
 
 #include "blocks/group/path_table.hpp"
 #include "blocks/path/path.hpp"
+#include "tools/lineshaft/plan_cells.hpp"
 
 namespace lineshaft {
 
@@ -36,7 +37,7 @@ class PathPlanner {
     bool line(std::string_view text, bool too_long, std::string& rows);
     void finish(std::string& rows);
     bool has_header() const { return has_header_; }
-    bool any_mistake() const { return mistakes_; }
+    bool any_mistake() const { return lines_.any_mistake(); }
 
   private:
     std::string read_header(std::string_view text);
@@ -50,15 +51,13 @@ class PathPlanner {
     bool takes_too_many_rows() const;
     void write_sample(double time, std::string& rows) const;
     void end(std::string& rows);
-    void mistake(const std::string& what);
 
-    std::string file_;
+    bulk::CountedLines lines_;
     PathOptions options_;
     PathLimits limits_;
     std::vector<std::size_t> order_;                 ///< of the header's columns
     std::vector<std::optional<std::string>> units_;  ///< of the columns that have been read
-    bool has_header_ = false, mistakes_ = false;
-    std::size_t number_ = 0;
+    bool has_header_ = false;
 
     std::vector<PathPiece> ring_;
     Path path_;

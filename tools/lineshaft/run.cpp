@@ -188,8 +188,7 @@ std::vector<Shown> shown_signals(const RunCommand& command, Loaded& loaded, Diag
                 shown.push_back({signal.name, signal});
         for (const BlockPlace& block : machine.blocks) add_texts(block, name, shown);
         if (shown.size() != before) continue;
-        Node node;
-        node.text = name;
+        const Node node = node_of(name);
         const bool is_block =
             is_identifier(name) &&
             std::ranges::find(net.inputs, name, &InputNode::name) == net.inputs.end();

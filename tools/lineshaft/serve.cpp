@@ -51,9 +51,7 @@ struct ServeCommand {
 /// L0305 for what is neither `max` nor above 0.
 double speed_of(const std::string& text, Diagnostics& out) {
     if (text == "max") return Pacer::unpaced;
-    Node node;
-    node.text = text;
-    const auto speed = Reader(out).quantity(node, "expected a number, or max");
+    const auto speed = Reader(out).quantity(node_of(text), "expected a number, or max");
     if (!speed ||
         (!speed->has_unit && speed->number >= Pacer::least && speed->number <= Pacer::most))
         return speed ? speed->number : 1;
@@ -64,19 +62,15 @@ double speed_of(const std::string& text, Diagnostics& out) {
 
 std::int64_t end_of(const std::string& text, Diagnostics& out) {
     if (text.empty()) return never;
-    Node node;
-    node.text = text;
-    return Reader(out).time(node).value_or(never);
+    return Reader(out).time(node_of(text)).value_or(never);
 }
 
 /// L0305 for what is neither a time nor one of the words.
 RecordSync sync_of(const std::string& text, Diagnostics& out) {
     if (text == "each") return {RecordSync::each};
     if (text == "none") return {RecordSync::none};
-    Node node;
-    node.text = text;
     Diagnostics of_time;
-    const auto time = Reader(of_time).time(node);
+    const auto time = Reader(of_time).time(node_of(text));
     if (time && *time > 0) return {*time};
     out.add(code::number_out_of_range, {},
             fmt::format("'{}' is not a time for --record-sync", text),

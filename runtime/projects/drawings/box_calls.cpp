@@ -52,6 +52,11 @@ bool is_operator(std::string_view type) {
     });
 }
 
+bool has_own_outputs(std::string_view call, std::string_view instance) {
+    if (call == "Method") return false;
+    return !instance.empty() || call == "FunctionBlock" || call == "Program" || call == "Action";
+}
+
 bool calls_member(std::string_view call, std::string_view instance) {
     return !instance.empty() && (st::same_name(call, "method") || st::same_name(call, "action"));
 }

@@ -27,6 +27,8 @@ bool is_operator(std::string_view type);
 /// of the box' type (`Motor.Stop`).
 bool calls_member(std::string_view call, std::string_view instance);
 std::string_view member_of_type(std::string_view type);
+/// Whether the outputs of a box are those of an instance, or of none, and not a METHOD's.
+bool has_own_outputs(std::string_view call, std::string_view instance);
 /// Whether an output of a METHOD's box is the result, which has the METHOD's name, or none.
 bool names_result(std::string_view output, std::string_view type);
 

@@ -66,11 +66,6 @@ std::vector<std::size_t> order_by_data_flow(const std::vector<ChartItem>& items,
     return order;
 }
 
-bool ChartItem::is_block() const {
-    if (call == "Method") return false;
-    return !instance.empty() || call == "FunctionBlock" || call == "Program" || call == "Action";
-}
-
 bool ChartItem::has_result() const {
     const std::size_t at = has_eno() ? 1 : 0;
     return !is_of_instance() || (at < outputs.size() && names_result(outputs[at].name, text));

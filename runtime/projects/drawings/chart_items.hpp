@@ -65,7 +65,7 @@ struct ChartItem {
 
     bool is_of_instance() const { return calls_member(call, instance); }
     /// Its outputs are those of an instance.
-    bool is_block() const;
+    bool is_block() const { return has_own_outputs(call, instance); }
     bool has_eno() const { return !outputs.empty() && st::same_name(outputs[0].name, "eno"); }
     /// A METHOD without a result has its VAR_OUTPUTs alone.
     bool has_result() const;

@@ -18,10 +18,6 @@ namespace {
 
 using st::same_name;
 
-bool is_any(std::string_view name, std::initializer_list<std::string_view> of) {
-    return std::ranges::any_of(of, st::is_called(name));
-}
-
 /// What SimaticML calls otherwise than SIMATIC SD.
 std::string name_of(std::string_view part, bool is_negated) {
     static constexpr std::pair<std::string_view, std::string_view> named[] = {

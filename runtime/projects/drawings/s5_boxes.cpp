@@ -3,6 +3,7 @@
 #include "runtime/projects/drawings/s7_boxes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/token.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::projects::s7 {
 
@@ -24,14 +25,9 @@ constexpr S5Row counter_coils[] = {
 
 template <std::size_t n>
 std::string_view function_of(const Running& r, const S5Row (&rows)[n]) {
-    const std::string word = " " + lower(r.it.name) + " ";
     const auto* found = std::ranges::find_if(
-        rows, [&](const S5Row& row) { return row.names.find(word) != row.names.npos; });
+        rows, [&](const S5Row& row) { return st::has_word(row.names, r.it.name); });
     return found == std::end(rows) ? std::string_view() : found->function;
-}
-
-bool is_any(std::string_view name, std::initializer_list<std::string_view> of) {
-    return std::ranges::any_of(of, st::is_called(name));
 }
 
 /// The timer or the counter, whatever its pin is called: the one that is no other.

@@ -8,6 +8,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/reader.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects::s7 {
@@ -83,7 +84,7 @@ Value Running::call(std::string_view function, const std::vector<Argument>& give
         if (value.is_empty()) continue;
         made.text.write(between, it.place);
         if (!pin.empty())
-            made.text.write(fmt::format("{0}{1}{0} {2} ", is_plain(pin) ? "" : "\"", pin,
+            made.text.write(fmt::format("{0}{1}{0} {2} ", is_identifier(pin) ? "" : "\"", pin,
                                         is_output ? "=>" : ":="),
                             it.place);
         made.text.append(value.text);

@@ -7,6 +7,7 @@
 
 #include "runtime/projects/drawings/values.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/reader.hpp"
 #include "runtime/st/syntax/token.hpp"
 
 namespace lineshaft::projects {
@@ -88,10 +89,10 @@ void SimaticAccess::write_token(Excerpts& to, pugi::xml_node token) const {
     } else if (is_called(token, "Access")) {
         to.append(text_of(token));
     } else if (is_called(token, "Parameter")) {
-        write_name(to, token, !is_plain(file_.plain(token.attribute("Name"))));
+        write_name(to, token, !is_identifier(file_.plain(token.attribute("Name"))));
         write_tokens(to, token);
     } else if (is_called(token, "Component")) {
-        write_name(to, token, !is_plain(file_.plain(token.attribute("Name"))));
+        write_name(to, token, !is_identifier(file_.plain(token.attribute("Name"))));
     } else if (is_called(token, "NamelessParameter") || is_called(token, "Expression")) {
         write_tokens(to, token);
     }
@@ -108,7 +109,7 @@ void SimaticAccess::write_components(Excerpts& to, pugi::xml_node symbol, bool i
         const std::string name = file_.plain(part.attribute("Name"));
         if (!is_first) to.write(".", place(part));
         if (is_first && is_local) to.write("#", place(part));
-        write_name(to, part, (is_first && !is_local) || !is_plain(name));
+        write_name(to, part, (is_first && !is_local) || !is_identifier(name));
         write_index(to, part);
         if (const std::string slice = file_.plain(part.attribute("SliceAccessModifier"));
             !slice.empty() && slice != "undef")
@@ -138,7 +139,7 @@ void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool i
         return file_.copy(to, value);
     }
     if (is_local) to.write("#", place(constant));
-    write_name(to, constant, !is_local || !is_plain(file_.plain(constant.attribute("Name"))));
+    write_name(to, constant, !is_local || !is_identifier(file_.plain(constant.attribute("Name"))));
 }
 
 /// Bits from the beginning of an area; of timers and counters their number.

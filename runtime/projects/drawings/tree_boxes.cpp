@@ -6,11 +6,6 @@
 
 namespace lineshaft::projects {
 
-bool TreeBox::is_block() const {
-    if (is_method()) return false;
-    return !instance.empty() || call == "FunctionBlock" || call == "Program" || call == "Action";
-}
-
 bool TreeBox::has_result() const {
     return !is_method() || (result() < outputs.size() && names_result(outputs[result()], type));
 }

@@ -21,7 +21,7 @@ struct TreeBox : BoxCall {
 
     bool is_method() const { return call == "Method"; }
     /// Its outputs are those of an instance, or of none.
-    bool is_block() const;
+    bool is_block() const { return has_own_outputs(call, instance); }
     /// It calls `member` of the instance.
     bool is_of_instance() const { return calls_member(call, instance); }
     std::string_view member() const { return member_of_type(type); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "runtime/source/reader.hpp"
 #include "runtime/st/functions/standard.hpp"
 
 namespace lineshaft::projects {
@@ -95,12 +96,6 @@ bool is_of_bits(const StandardFunction& f) {
     return f.word == st::Word::and_ || f.word == st::Word::or_ || f.word == st::Word::xor_;
 }
 
-bool is_name(std::string_view text) {
-    return !text.empty() && (is_letter(text.front()) || text.front() == '_') &&
-           std::ranges::all_of(text,
-                               [](char c) { return is_letter(c) || is_digit(c) || c == '_'; });
-}
-
 }  // namespace
 
 std::string type_name(const XmlFile& file, pugi::xml_node type) {
@@ -168,7 +163,7 @@ std::string NetworkTypes::of_name(std::string_view name) const {
 }
 
 std::string NetworkTypes::of_expression(std::string_view expression) const {
-    if (is_name(expression)) {
+    if (is_identifier(expression)) {
         const std::string small = lower(expression);
         return small == "true" || small == "false" ? "BOOL" : of_name(expression);
     }
@@ -182,7 +177,7 @@ std::string NetworkTypes::of_expression(std::string_view expression) const {
     if (!expression.empty() && std::ranges::all_of(expression, is_number)) return "#";
     if (expression.starts_with('\'')) return "STRING";
     const std::size_t dot = expression.find('.');
-    if (dot == expression.npos || !is_name(expression.substr(0, dot))) return {};
+    if (dot == expression.npos || !is_identifier(expression.substr(0, dot))) return {};
     return of_output(expression.substr(0, dot), expression.substr(dot + 1));
 }
 

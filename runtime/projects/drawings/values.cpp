@@ -104,13 +104,11 @@ std::string_view infix_of(std::string_view function) {
 }
 
 bool compares(std::string_view function) {
-    static constexpr std::string_view all[] = {"gt", "ge", "lt", "le", "eq", "ne"};
-    return std::ranges::any_of(all, [&](auto name) { return st::same_name(name, function); });
+    return is_any(function, {"gt", "ge", "lt", "le", "eq", "ne"});
 }
 
-bool is_plain(std::string_view name) {
-    return !name.empty() && is_letter(name.front()) &&
-           std::ranges::all_of(name, [](char c) { return is_letter(c) || is_digit(c); });
+bool is_any(std::string_view name, std::initializer_list<std::string_view> of) {
+    return std::ranges::any_of(of, st::is_called(name));
 }
 
 Value::Form shape_of(std::string_view expression) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "runtime/projects/excerpts.hpp"
@@ -43,8 +44,8 @@ std::string function_of(std::string_view box);
 std::string_view infix_of(std::string_view function);
 bool compares(std::string_view function);
 
-/// That needs no quotes behind a '.', or before a ':='.
-bool is_plain(std::string_view name);
+/// Whether it is one of these, whatever its capitals.
+bool is_any(std::string_view name, std::initializer_list<std::string_view> of);
 
 /// The shape of an expression that is written at an element.
 Value::Form shape_of(std::string_view expression);

@@ -43,7 +43,7 @@ bool takes(std::string_view family, const Type& given) {
 
 /// A typed value as it is written stands in a variable, to have a place: CODESYS takes none.
 void keep_value(Checking& c, Expression*& value) {
-    if (!c.routine || value->place.dialect().vendor != Vendor::none || !check(c, value)) return;
+    if (!c.routine || !value->place.dialect().any_takes_literals || !check(c, value)) return;
     if (value->kind != E::constant || value->variable || value->type->is_any()) return;
     Variable& kept = c.make_variable(*c.routine, value->token, value->token.text, value->type);
     kept.initial = value;

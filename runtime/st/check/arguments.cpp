@@ -108,7 +108,7 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
     const bool is_set = c.is_in_test() && !argument.is_output && argument.is_named() &&
                         parameter.section != Section::in_out;
     const bool is_output = parameter.section == Section::output;
-    const bool is_classic = value->place.dialect().vendor == Vendor::siemens && is_output;
+    const bool is_classic = value->place.dialect().outputs_may_be_assigned && is_output;
     if (is_classic && argument.is_named() && !is_set) argument.is_output = true;  // of STEP 7 V5
     const bool is_written_to = parameter.section == Section::in_out && is_prelude(parameter.name);
     const bool fits_sign =

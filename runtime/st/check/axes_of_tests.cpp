@@ -17,14 +17,6 @@ bool is_own(const Variable& variable) {
     return variable.type && is_kept && variable.space == Space::frame && !variable.constant;
 }
 
-bool has_handle(const Type& type) {
-    const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
-    if (type.kind == Kind::array) return has_handle(*type.element);
-    if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
-    if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
-    return type.kind == Kind::handle;
-}
-
 /// Assigns blocks of the program, one to each reference, at the beginning of tests.
 class Giving {
   public:

@@ -111,9 +111,9 @@ Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlock
         Expression* place = make_member(c, argument.value, "place");
         check(c, place);
         whole = make_target(c, like, make_converted(c, place, pointer_to(c, type)), &type);
-        is_it = make_binary(c, like.place, like.place, Word::equal,
-                            make_member(c, argument.value, "type_number"),
-                            make_constant(c, like, dint_type, {.integer = number}));
+        is_it =
+            make_binary(c, like.place, like.place, Word::equal,
+                        make_member(c, argument.value, "type_number"), make_dint(c, like, number));
         argument.value = whole;
     }
     Expression* call = make_call(c, like, make_function_name(c, *like.operands[0], blocks.function),
@@ -126,8 +126,8 @@ Statement* bytes_of_variant(Checking& c, const Expression& like, const ByteBlock
 
 bool take_as_variant(Checking& c, Expression*& e, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
-    const bool is_siemens = e->place.dialect().has_s7_instructions;
-    if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude() || !is_siemens)
+    const bool has_instructions = e->place.dialect().has_s7_instructions;
+    if (!blocks || blocks->of_variant.empty() || e->place.source->is_prelude() || !has_instructions)
         return false;
     if (!has_all(called, e->arguments)) return false;
     Argument* given = find_called(e->arguments, blocks->variable(), &Argument::name);
@@ -161,13 +161,13 @@ void write_serializations(Checking& c) {
 
 bool is_given_bytes(Checking& c, const Expression& call, const Routine& called) {
     const ByteBlocks* const blocks = find_blocks(called);
-    const bool is_siemens = call.place.dialect().has_s7_instructions;
+    const bool has_instructions = call.place.dialect().has_s7_instructions;
     if (!blocks || call.place.source->is_prelude()) return true;
-    if (is_siemens && !has_all(called, call.arguments)) return true;
+    if (has_instructions && !has_all(called, call.arguments)) return true;
     for (const std::string_view name : {blocks->read, blocks->written}) {
         const Argument* given = find_called(call.arguments, name, &Argument::name);
         if (name.empty() || (given && is_hidden(*given->value))) continue;
-        if (!given && !is_siemens) {
+        if (!given && !has_instructions) {
             c.fail(code::not_declared, call.operands[0]->place,
                    fmt::format("'{}' is not declared", call.operands[0]->token.text),
                    fmt::format("add the source that declares it; SCL's is {}(..., {} := ...)",

@@ -201,7 +201,7 @@ void check_arguments(Checking& c, Expression*& e, Routine& routine) {
     std::vector<const Variable*> given;
     const Dialect& dialect = call.place.dialect();
     const bool may_end_early =
-        dialect.inputs_may_be_left_out || (routine.owner && dialect.vendor == Vendor::none);
+        dialect.inputs_may_be_left_out || (routine.owner && dialect.methods_may_leave_out_inputs);
     bool by_name = call.arguments.empty() || may_end_early;  // 6.6.1.4.2
     for (Argument& argument : call.arguments) {
         by_name |= argument.is_named();

@@ -27,14 +27,6 @@ bool are_same_pattern(const Type& given, const Type& to) {
 
 namespace {
 
-bool is_of_codesys(const Dialect& dialect) {
-    return dialect.vendor == Vendor::codesys;
-}
-
-bool is_of_siemens(const Dialect& dialect) {
-    return dialect.vendor == Vendor::siemens;
-}
-
 /// A bit string stands for an integer of its width or a wider one, and the other way.
 bool is_same_pattern(const Type& from, const Type& to) {
     const bool mixes = (from.kind == Kind::bits && to.kind == Kind::integer) ||
@@ -86,7 +78,7 @@ bool rounds(Checking& c, const Expression& e, const Type& to) {
     const bool changes_sign = from.kind == Kind::integer && to.kind == Kind::integer &&
                               from.bits <= to.bits && from.is_signed != to.is_signed &&
                               !to.is_subrange && (dialect.is_loose || !is_constant(e));
-    const bool mixes_signs = takes_what_others_refuse(dialect) && narrows_mixed_signs(e, from, to);
+    const bool mixes_signs = dialect.takes_what_others_refuse && narrows_mixed_signs(e, from, to);
     if (!(dialect.dint_becomes_real && of_dint) && !(dialect.lreal_becomes_real && is_real) &&
         !of_long && !changes_sign && !mixes_signs) {
         const bool is_unchecked = converts_unchecked(e, to);
@@ -174,7 +166,7 @@ bool refuse_conversion(Checking& c, const Expression& e, const Type& to) {
     if (to.kind == Kind::time && from.is_number())
         help = from.is_any() ? "write a time with its unit: T#500ms"
                              : fmt::format("write {}_TO_TIME(...), of {}", from.plain().name,
-                                           e.place.dialect().vendor == Vendor::matiec ? "s" : "ms");
+                                           e.place.dialect().functions_are_in_c ? "s" : "ms");
     if (to.kind == Kind::structure && describe(to) == describe(from))
         help = "declare a TYPE, and both variables of that";
     if (to.is_character && from.kind == Kind::text) help = "a CHAR is one character: 'A'";
@@ -195,8 +187,8 @@ bool wraps(const Type& to, Wide value, const Dialect& dialect) {
     const Wide pattern = Wide{1} << to.bits;
     if (value < 0)
         return -value <= pattern / 2 && !to.is_signed &&
-               (to.kind == Kind::integer ? dialect.is_loose : is_of_codesys(dialect));
-    return is_of_codesys(dialect) && to.kind == Kind::integer && to.is_signed &&
+               (to.kind == Kind::integer ? dialect.is_loose : dialect.literals_wrap);
+    return dialect.literals_wrap && to.kind == Kind::integer && to.is_signed &&
            value > largest(to) && value < pattern;
 }
 
@@ -204,7 +196,7 @@ bool wraps(const Type& to, Wide value, const Dialect& dialect) {
 bool counts_ms(const Expression& e, const Type& to) {
     return to.kind == Kind::time && e.type->kind == Kind::any_integer &&
            e.constant.integer >= smallest(dint_type) && e.constant.integer <= largest(dint_type) &&
-           e.place.dialect().vendor == Vendor::automation_studio;
+           e.place.dialect().times_take_numbers;
 }
 
 bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
@@ -266,7 +258,7 @@ bool fold_conversion(Checking& c, Expression*& e, const Type& to) {
                         e->place.dialect().times_count_ms;
     const Wide given =
         is_cut ? in_whole_ms(e->constant.integer, e->place.dialect()) : e->constant.integer;
-    const bool is_odd = given % 2 != 0, takes_lowest = is_of_siemens(e->place.dialect());
+    const bool is_odd = given % 2 != 0, takes_lowest = e->place.dialect().truth_is_lowest_bit;
     const Wide value = to.kind == Kind::boolean ? Wide{takes_lowest ? is_odd : given != 0}
                                                 : wrapped(to.plain(), given);
     return become(c, e, to, {.integer = value});
@@ -322,7 +314,8 @@ bool is_literal_character(const Expression& e) {
 }
 
 bool takes_long_numbers(const Expression& e, const Type& from) {
-    return is_of_codesys(e.place.dialect()) && from.kind == Kind::integer && from.bits == 64;
+    return e.place.dialect().long_numbers_become_real && from.kind == Kind::integer &&
+           from.bits == 64;
 }
 
 bool counts_bits(const Type& from, const Type& to, const Place& place) {
@@ -338,7 +331,7 @@ static const Type* count_bits(Checking& c, Expression*& e, const Type& to) {
 
 /// In SCL a DT, an LDT and a DTL become one another.
 static bool coerce_dtl(Checking& c, Expression*& e, const Type& to) {
-    if (!is_of_siemens(e->place.dialect())) return false;
+    if (!e->place.dialect().has_s7_instructions) return false;
     const bool is_made = e->type->kind == Kind::moment && is_dtl(to),
                is_read = is_dtl(*e->type) && to.kind == Kind::moment;
     if (!is_made && !is_read) return false;
@@ -422,8 +415,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
 
 Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect) {
     constexpr Wide ms = 1'000'000;
-    const bool has_sign = is_of_siemens(dialect);
-    return wrapped(integer_type(32, has_sign), nanoseconds / ms) * ms;
+    return wrapped(integer_type(32, dialect.times_have_signs), nanoseconds / ms) * ms;
 }
 
 const Type* convert(Checking& c, Expression*& e, const Type& to) {

@@ -4,11 +4,6 @@
 
 namespace lineshaft::st {
 
-/// CODESYS, MatIEC and B&R: an instance in a function, UINT of a UINT and an INT, `[COUNT(5)]`.
-inline bool takes_what_others_refuse(const Dialect& dialect) {
-    return dialect.is_loose || dialect.vendor == Vendor::automation_studio;
-}
-
 /// REAL.
 bool is_single(const Type& type);
 /// `i * 0.1` is an LREAL: where one is due, in CODESYS where no REAL is. Else it is a REAL.

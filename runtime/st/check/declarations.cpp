@@ -129,15 +129,16 @@ const Type& longer_string(Checking& c, bool is_wide) {
 /// On an S7 what is elementary is given to a call by value.
 bool copies_in_out(const Routine& routine, const Type& type) {
     const bool is_structured = type.kind == Kind::moment && !type.counts_ns;
-    return &routine.pou->name.place.dialect() == &scl && type.is_scalar() && !type.is_handle() &&
-           !type.is_reference() && type.kind != Kind::interface && !is_structured;
+    return routine.pou->name.place.dialect().copies_in_outs && type.is_scalar() &&
+           !type.is_handle() && !type.is_reference() && type.kind != Kind::interface &&
+           !is_structured;
 }
 
 /// A block keeps which axis it was given last. Of a call the variable itself is meant, which a
 /// pointer to it outlives.
 bool is_copied(const Routine& routine, const Type* type) {
     const Source& source = *routine.pou->name.place.source;
-    const bool has_pointers = &source.dialect != &scl && !source.is_prelude();
+    const bool has_pointers = !source.dialect.has_no_pointers && !source.is_prelude();
     if (!type || !type->is_handle()) return type && copies_in_out(routine, *type);
     return routine.has_instances() || !has_pointers;
 }
@@ -174,7 +175,7 @@ Meant meaning_of(Checking& c, const Routine& routine, const DeclarationBlock& bl
     const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
     if (is_value && is_unsized) type = &longer_string(c, is_wide);
     const bool is_text_of_br =
-        type && type->kind == Kind::text && place.dialect().vendor == Vendor::automation_studio;
+        type && type->kind == Kind::text && place.dialect().in_outs_take_any_text;
     if (section == Section::in_out && (is_unsized || is_text_of_br))
         type = type->is_wide ? &open_wide_string_type : &open_string_type;
     const bool is_of_own = is_its_own_block(c, routine, type);
@@ -231,7 +232,7 @@ void check_instances(Checking& c, const Routine& routine, const Variable& variab
     const bool is_kept = routine.has_instances() || routine.is_test() || meant.is_static() ||
                          meant.section == Section::kept || meant.section == Section::in_out;
     if (type && type->is_instance() && !is_kept &&
-        !takes_what_others_refuse(meant.place().dialect()))
+        !meant.place().dialect().takes_what_others_refuse)
         c.fail(code::wrong_place, meant.place(),
                "a function keeps nothing from call to call, so it has no instances",
                "pass the instance as VAR_IN_OUT");

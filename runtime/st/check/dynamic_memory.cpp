@@ -62,15 +62,9 @@ Checking::Pool& pool_of(Checking& c, const Expression& like, const Type& type) {
     return made;
 }
 
-Expression* use_of(Checking& c, const Expression& like, Variable& variable) {
-    Expression* use = make_use(c, like, variable);
-    use->type = variable.type;
-    return use;
-}
-
 Expression* element(Checking& c, const Expression& like, Variable& array, Expression* index) {
     Expression* made = make(c, E::index, like);
-    made->operands[0] = use_of(c, like, array);
+    made->operands[0] = make_use(c, like, array);
     made->arguments.push_back({.value = index});
     return made;
 }
@@ -81,10 +75,6 @@ Expression* instance(Checking& c, const Expression& like, Variable& array, Expre
     return array.type->element->kind == Kind::block
                ? make_target(c, like, make_call(c, "__SYSTEM.ADR", place), nullptr)
                : place;
-}
-
-Expression* number(Checking& c, const Expression& like, std::int64_t value) {
-    return make_constant(c, like, dint_type, {.integer = value});
 }
 
 Expression* null(Checking& c, const Expression& like) {
@@ -99,7 +89,7 @@ Expression* binary(Checking& c, const Expression& like, Word op, Expression* lef
 /// `FOR counter := first TO last DO body END_FOR`
 Statement* make_for(Checking& c, const Expression& like, Variable& counter, Expression* first,
                     Expression* last, Block body) {
-    Statement* loop = make_assignment(c, like.place, use_of(c, like, counter), first);
+    Statement* loop = make_assignment(c, like.place, make_use(c, like, counter), first);
     loop->kind = S::for_;
     loop->limit = last;
     loop->body = std::move(body);
@@ -116,7 +106,7 @@ Expression* system_call(Checking& c, const Expression& like, std::string_view fu
     };
     return make_call(c, like, make_name(c, like, function),
                      {{.name = named(input), .value = value},
-                      {.name = named("taken"), .value = use_of(c, like, taken)}});
+                      {.name = named("taken"), .value = make_use(c, like, taken)}});
 }
 
 /// How a new one begins, in statements: as its type says, then FB_init is called.
@@ -125,18 +115,18 @@ Block begin_elements(Checking& c, const Expression& like, Checking::Pool& pool, 
     const Type& type = *pool.type;
     Block body;
     const auto at_counter = [&] {
-        return element(c, like, *pool.elements, use_of(c, like, counter));
+        return element(c, like, *pool.elements, make_use(c, like, counter));
     };
     Statement* renewal =
         make_assignment(c, like.place, at_counter(),
-                        element(c, like, *pool.elements, number(c, like, size_of_pool(type))));
+                        element(c, like, *pool.elements, make_dint(c, like, size_of_pool(type))));
     c.renewals.insert(renewal);
     body.push_back(renewal);
-    const auto made = [&] { return instance(c, like, *pool.elements, use_of(c, like, counter)); };
+    const auto made = [&] { return instance(c, like, *pool.elements, make_use(c, like, counter)); };
     construct_one(c, like, *c.routine, type, values, made, body);
-    Expression* last = binary(c, like, Word::plus, use_of(c, like, first), count);
-    return {make_for(c, like, counter, use_of(c, like, first),
-                     binary(c, like, Word::minus, last, number(c, like, 1)), std::move(body))};
+    Expression* last = binary(c, like, Word::plus, make_use(c, like, first), count);
+    return {make_for(c, like, counter, make_use(c, like, first),
+                     binary(c, like, Word::minus, last, make_dint(c, like, 1)), std::move(body))};
 }
 
 bool is_interface(Checking& c, const Expression& target) {
@@ -166,32 +156,32 @@ Block end_elements(Checking& c, const Expression& like, Checking::Pool& pool, Va
     const Routine* exit =
         type.kind == Kind::block ? find_in(type.routine->methods, "fb_exit") : nullptr;
     if (!exit) return {};
-    Expression* ended = instance(c, like, *pool.elements, use_of(c, like, counter));
+    Expression* ended = instance(c, like, *pool.elements, make_use(c, like, counter));
     Statement* call =
         make_call_statement(c, make_call(c, like, make_member(c, ended, exit->pou->name.text),
                                          {{.value = make_boolean(c, like, false)}}));
-    Expression* behind = binary(c, like, Word::plus, use_of(c, like, first),
-                                element(c, like, *pool.taken, use_of(c, like, first)));
-    return {make_for(c, like, counter, use_of(c, like, first),
-                     binary(c, like, Word::minus, behind, number(c, like, 1)), {call})};
+    Expression* behind = binary(c, like, Word::plus, make_use(c, like, first),
+                                element(c, like, *pool.taken, make_use(c, like, first)));
+    return {make_for(c, like, counter, make_use(c, like, first),
+                     binary(c, like, Word::minus, behind, make_dint(c, like, 1)), {call})};
 }
 
 /// `IF taken[i] > 0 AND_THEN p = ADR(elements[i]) THEN` calls FB_exit and gives them back.
 Statement* delete_of(Checking& c, const Checking::Deletion& deletion, Checking::Pool& pool,
                      Variable& counter, Variable& inner) {
     const Expression& like = *deletion.statement->value;
-    const auto place = [&] { return element(c, like, *pool.elements, use_of(c, like, counter)); };
+    const auto place = [&] { return element(c, like, *pool.elements, make_use(c, like, counter)); };
     Expression* is_taken =
-        binary(c, like, Word::greater, element(c, like, *pool.taken, use_of(c, like, counter)),
-               number(c, like, 0));
+        binary(c, like, Word::greater, element(c, like, *pool.taken, make_use(c, like, counter)),
+               make_dint(c, like, 0));
     Expression* is_it = binary(c, like, Word::equal, make_copy(c, *deletion.pointer),
                                make_call(c, "__SYSTEM.ADR", place()));
     Block body = end_elements(c, like, pool, counter, inner);
     body.push_back(make_call_statement(c, system_call(c, like, "__SYSTEM.__DELETE", "first",
-                                                      use_of(c, like, counter), *pool.taken)));
+                                                      make_use(c, like, counter), *pool.taken)));
     body.push_back(make_exit(c, like.place));
-    return make_for(c, like, counter, number(c, like, 0),
-                    number(c, like, size_of_pool(*pool.type) - 1),
+    return make_for(c, like, counter, make_dint(c, like, 0),
+                    make_dint(c, like, size_of_pool(*pool.type) - 1),
                     {make_if(c, like.place, binary(c, like, Word::and_then_, is_taken, is_it),
                              std::move(body), {})});
 }
@@ -246,29 +236,29 @@ bool rewrite_new(Checking& c, Statement*& s) {
              &counter = variable("__NEW.counter", dint_type),
              &pointer = variable("__NEW.pointer", pointer_to(c, *type));
     Expression* given = call.arguments.empty()
-                            ? number(c, like, 1)
+                            ? make_dint(c, like, 1)
                             : make_call(c, "__SYSTEM.TO_DINT", call.arguments[0].value);
-    Block then = begin_elements(c, like, pool, first, counter, use_of(c, like, count), values);
+    Block then = begin_elements(c, like, pool, first, counter, make_use(c, like, count), values);
     then.push_back(make_assignment(
-        c, s->place, use_of(c, like, pointer),
-        make_call(c, "__SYSTEM.ADR", element(c, like, *pool.elements, use_of(c, like, first)))));
+        c, s->place, make_use(c, like, pointer),
+        make_call(c, "__SYSTEM.ADR", element(c, like, *pool.elements, make_use(c, like, first)))));
     Expression* is_made =
-        binary(c, like, Word::greater_or_equal, use_of(c, like, first), number(c, like, 0));
+        binary(c, like, Word::greater_or_equal, make_use(c, like, first), make_dint(c, like, 0));
     Block otherwise, behind;
     if (is_interface(c, *s->target)) {
         Expression* instance = make(c, E::deref, like);
-        instance->operands[0] = use_of(c, like, pointer);
+        instance->operands[0] = make_use(c, like, pointer);
         Expression* none = make_constant(c, like, any_integer_type, {});
         then.push_back(make_assignment(c, s->place, s->target, instance));
         otherwise.push_back(make_assignment(c, s->place, s->target, none));
     } else {
-        behind.push_back(make_assignment(c, s->place, s->target, use_of(c, like, pointer)));
+        behind.push_back(make_assignment(c, s->place, s->target, make_use(c, like, pointer)));
     }
-    Block all{make_assignment(c, s->place, use_of(c, like, count), given),
-              make_assignment(c, s->place, use_of(c, like, first),
+    Block all{make_assignment(c, s->place, make_use(c, like, count), given),
+              make_assignment(c, s->place, make_use(c, like, first),
                               system_call(c, like, "__SYSTEM.__NEW", "count",
-                                          use_of(c, like, count), *pool.taken)),
-              make_assignment(c, s->place, use_of(c, like, pointer), null(c, like)),
+                                          make_use(c, like, count), *pool.taken)),
+              make_assignment(c, s->place, make_use(c, like, pointer), null(c, like)),
               make_if(c, s->place, is_made, std::move(then), std::move(otherwise))};
     std::ranges::move(behind, std::back_inserter(all));
     s = make_sequence(c, s->place, std::move(all));

@@ -26,7 +26,7 @@ Type& global_variables(Checking& c) {
 bool is_beside_a_type(Checking& c, const Token& name) {
     const Dialect& dialect = name.place.dialect();
     if (c.globals.contains(name.text)) return false;
-    if (&dialect == &iec || &dialect == &simatic_ax) return c.users.types.contains(name.text);
+    if (dialect.variables_hide_types) return c.users.types.contains(name.text);
     if (!dialect.is_loose && !dialect.capitals_count) return false;
     const Routine* block = find_in(c.users.routines, name.text);
     const bool is_type = block && block->pou->kind == PouKind::function_block;

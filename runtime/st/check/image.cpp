@@ -47,7 +47,7 @@ std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
     const auto address = token.text.starts_with('%') ? read_address(token.text, count)
                                                      : read_classic_address(token.text);
     if (address && address->end() <= longest_area) return address;
-    if (token.place.dialect().vendor == Vendor::codesys)
+    if (token.place.dialect().image_has_points)
         if (const auto point = point_of(c, token.text)) return point;
     if (!address) {
         c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
@@ -219,14 +219,18 @@ void locate_in_image(Checking& c, Variable& variable, const Declaration& declare
            "declare it there, or write the address in the body");
 }
 
+/// What a memory has at an address is written and packed alike in sources of one dialect alone.
+static bool is_seen_alike(const Variable& direct, const Place& place) {
+    return &direct.name.place.dialect() == &place.dialect();
+}
+
 const Type* check_direct(Checking& c, Expression& e) {
     const auto address = address_of(c, e.token);
     if (!address) return nullptr;
     Image& image = image_of(c, e.place);
     const auto is_there = [&](const Variable* variable) {
         return variable->is_direct && variable->type->is_scalar() &&
-               variable->address == *address &&
-               &variable->name.place.dialect() == &e.place.dialect();
+               variable->address == *address && is_seen_alike(*variable, e.place);
     };
     const auto it = std::ranges::find_if(image.variables, is_there);
     if (it != image.variables.end()) {
@@ -246,8 +250,7 @@ Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
     constexpr std::string_view names[areas] = {"%IB0..%IB1023", "%QB0..%QB1023", "%MB0..%MB1023"};
     const std::string_view name = names[static_cast<std::size_t>(area)];
     for (Variable* known : image_of(c, at.place).variables)
-        if (known->text == name && &known->name.place.dialect() == &at.place.dialect())
-            return *known;
+        if (known->text == name && is_seen_alike(*known, at.place)) return *known;
     Type& array = c.make_type(Kind::array, {});
     array.upper = 1023;
     array.element = &bits_type(8);

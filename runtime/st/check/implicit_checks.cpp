@@ -18,7 +18,7 @@ bool is_implicit(std::string_view name) {
 /// Null: the application has no such function, or it is not called here.
 const Routine* find_check(Checking& c, const Expression& at, const std::string& name) {
     const bool is_due = c.routine && !is_constant(at) && at.place.source->is_users() &&
-                        at.place.dialect().vendor == Vendor::codesys &&
+                        at.place.dialect().has_implicit_checks &&
                         !is_implicit(c.routine->pou->name.text);
     const Routine* found = is_due ? find_in(c.users.routines, name) : nullptr;
     const bool is_guarded = found && at.kind == E::call && at.routine == found;

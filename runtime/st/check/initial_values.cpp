@@ -108,7 +108,7 @@ void check_repeated(Checking& c, Expression& repeated, Wide times, const Element
 
 /// CODESYS and B&R: `[COUNT(5), (COUNT - 1)(6)]`, so many times as a constant says.
 bool is_repeated_by_constant(Checking& c, const Expression& e) {
-    if (e.kind != E::call || !takes_what_others_refuse(e.place.dialect())) return false;
+    if (e.kind != E::call || !e.place.dialect().takes_what_others_refuse) return false;
     const Expression* count = e.operands[0];
     if (count->kind == E::binary || count->kind == E::constant) return true;
     if (const auto name = count->kind == E::member ? qualified_name(c, *count) : std::nullopt)

@@ -19,8 +19,7 @@ namespace {
 
 /// In CODESYS and TwinCAT several underlines may stand between two digits.
 std::optional<Wide> read_whole_number(std::string_view text, const Dialect& dialect) {
-    if (dialect.vendor != Vendor::codesys || text.find("__") == text.npos)
-        return read_integer(text);
+    if (!dialect.underlines_may_repeat || text.find("__") == text.npos) return read_integer(text);
     std::string plain(text);
     for (std::size_t at = plain.find("__"); at != plain.npos; at = plain.find("__"))
         plain.erase(at, 1);
@@ -99,7 +98,7 @@ const Type* check_time(Checking& c, Expression*& slot) {
     e.constant.integer = wrapped(is_long ? long_time_type(e.place) : ltime_type, *value);
     if (!dialect.times_count_ms) return &time_type;
     const Wide kept = is_long ? *value : in_whole_ms(*value, dialect);
-    if (dialect.vendor == Vendor::siemens && !is_long && kept != *value)
+    if (dialect.refuses_finer_times && !is_long && kept != *value)
         return c.fail(code::value_out_of_range, e.place,
                       fmt::format("'{}' is not a TIME", e.place.text()),
                       "that is whole ms from T#-24d20h31m23s648ms to T#24d20h31m23s647ms; write "

@@ -102,7 +102,8 @@ void open_siemens(Checking& c) {
         if (is_namespace(c, library)) opened.paths.push_back(library);
     if (opened.paths.empty()) return;
     for (const auto& source : c.tree.sources)
-        if (&source->dialect == &scl) c.prefixes[source.get()].push_back(opened);
+        if (source->dialect.libraries == Libraries::siemens)
+            c.prefixes[source.get()].push_back(opened);
 }
 
 }  // namespace

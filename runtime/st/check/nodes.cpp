@@ -63,6 +63,10 @@ Expression* make_boolean(Checking& c, const Expression& like, bool value) {
     return make_constant(c, like, bool_type, {.integer = value});
 }
 
+Expression* make_dint(Checking& c, const Expression& like, std::int64_t value) {
+    return make_constant(c, like, dint_type, {.integer = value});
+}
+
 Expression* make_text(Checking& c, const Expression& quoted) {
     Token token = quoted.token;
     token.word = Word::text;

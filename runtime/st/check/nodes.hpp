@@ -25,6 +25,7 @@ Expression* make_constant(Checking& c, const Expression& like, const Type& type,
 /// `e` becomes that value, whose type is given. It is never null.
 const Type* become(Checking& c, Expression*& e, const Type& type, Constant value);
 Expression* make_boolean(Checking& c, const Expression& like, bool value);
+Expression* make_dint(Checking& c, const Expression& like, std::int64_t value);
 /// `"..."`, which is no name, as the text that it encloses.
 Expression* make_text(Checking& c, const Expression& quoted);
 /// The variable, where `like` stands.

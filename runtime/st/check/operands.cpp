@@ -173,7 +173,7 @@ void keep_width(Checking& c, Expression*& e) {
     const bool is_reckoned = e->kind == E::unary || e->kind == E::binary;
     const bool is_whole =
         e->type && (e->type->kind == Kind::integer || e->type->kind == Kind::bits);
-    if (e->place.dialect().vendor != Vendor::matiec || !is_reckoned || !is_whole) return;
+    if (!e->place.dialect().functions_keep_widths || !is_reckoned || !is_whole) return;
     e = make_converted(c, e, *e->type);
     e->conversion.is_written = true;
 }

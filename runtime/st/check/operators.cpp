@@ -105,8 +105,8 @@ const Type* check_logic(Checking& c, Expression*& e) {
                       fmt::format("{} takes two BOOL", shown(e->op)));
     // MatIEC makes && and || of them.
     const bool is_shortened = (e->op == Word::and_ || e->op == Word::or_) &&
-                              e->place.dialect().vendor == Vendor::matiec &&
-                              a.kind == Kind::boolean && b.kind == Kind::boolean;
+                              e->place.dialect().ands_end_early && a.kind == Kind::boolean &&
+                              b.kind == Kind::boolean;
     if (is_shortened)
         e = make_binary(c, e->place, e->token.place,
                         e->op == Word::and_ ? Word::and_then_ : Word::or_else_, e->operands[0],
@@ -139,15 +139,6 @@ void take_truths(Checking& c, Expression& e, bool always) {
     }
 }
 
-/// How many numbers and texts there are in it.
-std::uint64_t count_parts(const Type& type) {
-    if (type.kind == Kind::array) return type.count() * count_parts(*type.element);
-    if (type.kind != Kind::structure) return 1;
-    std::uint64_t count = 0;
-    for (const Variable* member : type.members) count += count_parts(*member->type);
-    return count;
-}
-
 /// `a.x = b.x AND a.y = b.y`
 Expression* equal_parts(Checking& c, const Expression& like, Expression* a, Expression* b,
                         const Type& type) {
@@ -173,9 +164,9 @@ Expression* equal_parts(Checking& c, const Expression& like, Expression* a, Expr
 bool compares_parts(const Expression& e) {
     const Expression &left = *e.operands[0], &right = *e.operands[1];
     const Type& type = *left.type;
-    constexpr std::uint64_t most = 256;
+    constexpr Wide most = 256;
     return (e.op == Word::equal || e.op == Word::unequal) &&
-           e.place.dialect().vendor == Vendor::siemens && same_type(type, *right.type) &&
+           e.place.dialect().compares_structures && same_type(type, *right.type) &&
            (type.kind == Kind::structure || (type.kind == Kind::array && !type.is_open)) &&
            !has_call(left) && !has_call(right) && count_parts(type) <= most;
 }

@@ -83,7 +83,7 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
         const bool is_character =
             parameter->type->is_character && is_literal_character(*argument.value);
         const auto one = closeness(*parameter, is_character ? char_type : type);
-        const bool converts = call.place.dialect().vendor == Vendor::siemens &&
+        const bool converts = call.place.dialect().inputs_take_any_integer &&
                               parameter->section == Section::input &&
                               parameter->type->kind == Kind::integer && type.kind == Kind::integer;
         if (!one && !converts) return {};
@@ -99,7 +99,7 @@ std::optional<int> closeness(const Expression& call, const Routine& routine) {
 
 bool means_function(Checking& c, const Expression& call, const Routine& method) {
     const Token& name = call.operands[0]->token;
-    if (call.place.dialect().vendor == Vendor::none) {  // where methods are called by THIS
+    if (call.place.dialect().this_calls_methods) {
         const Routine* function = c.find_routine(name);
         if (function && function->is_function() && !function->owner) return true;
     }

@@ -12,16 +12,10 @@ Expression like_name(const Variable& variable) {
     return {.token = variable.name, .place = variable.name.place};
 }
 
-Expression* typed_use(Checking& c, const Expression& like, Variable& variable) {
-    Expression* use = make_use(c, like, variable);
-    use->type = variable.type;
-    return use;
-}
-
 void assign_in_each_call(Checking& c, Routine& routine, Variable& to, Variable& from) {
     const Expression like = like_name(to);
     routine.call_begins.push_back(
-        make_assignment(c, like.place, typed_use(c, like, to), typed_use(c, like, from)));
+        make_assignment(c, like.place, make_use(c, like, to), make_use(c, like, from)));
     routine.holds_instance = true;
 }
 
@@ -145,8 +139,8 @@ void give_own_instance(Checking& c, Routine& routine, Variable& result) {
     result.type = &make_reference(c, Referring::alias, given.type);
     const Expression like = like_name(result);
     Statement* refer =
-        make_assignment(c, like.place, typed_use(c, like, result),
-                        make_reference_to(c, typed_use(c, like, given), *result.type));
+        make_assignment(c, like.place, make_use(c, like, result),
+                        make_reference_to(c, make_use(c, like, given), *result.type));
     refer->op = Word::reference_assign;
     routine.call_begins.push_back(refer);
 }

@@ -310,7 +310,7 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const Type* of = target.operands[0]->type;
     const bool is_named = target.operands[0]->variable || target.operands[0]->kind == E::converted;
     const bool is_block = of && (of->kind == Kind::block || is_prelude(target.token));
-    const bool is_siemens_own =
+    const bool is_own_there =
         target.place.dialect().sets_variables_of_instances &&
         (variable->section == Section::output ||
          (is_block && (variable->section == Section::local || is_kept_in_out(*variable))));
@@ -320,7 +320,7 @@ bool check_target(Checking& c, Expression& target, std::string_view how) {
     const bool is_inherited =
         is_local && target.place.dialect().is_loose && inherits(own_block(c), *variable);
     if (of && of->is_instance() && variable->section != Section::input && !c.is_in_test() &&
-        is_named && !is_siemens_own && !is_public && !is_inherited)
+        is_named && !is_own_there && !is_public && !is_inherited)
         return refuse(
             fmt::format("'{}' of {}",
                         variable->space == Space::global ? target.token.text : variable->text,

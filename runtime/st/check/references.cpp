@@ -144,17 +144,13 @@ bool refuse_target(Checking& c, const Expression& e, const Type& to, const Type&
                   std::move(help));
 }
 
-bool is_of_automation_studio(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::automation_studio;
-}
-
 /// A REFERENCE TO is given a variable, or another reference; of B&R a number that is an address.
 bool bind(Checking& c, Expression*& e, const Type& to) {
     if (is_null(*e)) return become(c, e, to, {});
     const Dialect& dialect = e->place.dialect();
     const bool is_address = dialect.references_take_addresses && holds_address(*e->type) &&
                             to.element &&
-                            (is_of_automation_studio(*e) || !same_type(*to.element, *e->type));
+                            (dialect.references_take_numbers || !same_type(*to.element, *e->type));
     if (is_address) return convert_address(c, e, to);
     if (to.element && to.element->kind == Kind::handle) take_place_of_object(c, e);
     const Type& from = *e->type;
@@ -165,7 +161,7 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     if (!to.element) return false;
     const bool are_texts = e->place.dialect().texts_have_any_length && from.kind == Kind::text &&
                            to.element->kind == Kind::text;
-    const bool are_arrays = is_of_automation_studio(*e) && from.kind == Kind::array &&
+    const bool are_arrays = dialect.references_take_numbers && from.kind == Kind::array &&
                             to.element->kind == Kind::array &&
                             same_type(*from.element, *to.element->element);
     if (!are_texts && !are_arrays && !is_target(to, from)) return refuse_target(c, *e, to, from);
@@ -382,8 +378,8 @@ bool means_address(const Expression& e, const Expression& other) {
     const bool is_alias = e.kind == E::deref && e.operands[0]->type->is_alias();
     if (!is_alias || !e.type || !e.place.dialect().references_take_addresses) return false;
     const bool is_number = e.type->is_number() || e.type->is_bits();
-    const bool is_kept_number = is_of_automation_studio(e) && e.operands[0]->kind == E::member &&
-                                holds_address(*other.type);
+    const bool is_kept_number = e.place.dialect().references_take_numbers &&
+                                e.operands[0]->kind == E::member && holds_address(*other.type);
     return other.type->is_pointer() || ((is_null(other) || is_kept_number) && !is_number);
 }
 

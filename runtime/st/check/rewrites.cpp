@@ -25,7 +25,7 @@ bool is_timer(const Type& type) {
 
 /// What a function of MatIEC gives where EN is FALSE.
 void assign_initial_value(Checking& c, const Statement& s, Block& to) {
-    if (s.kind != S::assign || s.place.dialect().vendor != Vendor::matiec) return;
+    if (s.kind != S::assign || !s.place.dialect().disabled_calls_give_zero) return;
     Expression* target = s.target;
     const Type* type = check(c, target);
     const bool is_elementary = type && (type->kind <= Kind::time ||
@@ -207,8 +207,8 @@ bool rewrite(Checking& c, Statement*& s) {
         return true;
     }
     if (!is_switched("en") && !standard_eno) {
-        const bool is_siemens = s->place.dialect().has_s7_instructions;
-        return is_siemens && routine && rewrite_bytes(c, s, *routine);
+        const bool has_bytes = s->place.dialect().has_s7_instructions;
+        return has_bytes && routine && rewrite_bytes(c, s, *routine);
     }
     s = if_enabled(c, *s, routine != nullptr);
     check(c, s);

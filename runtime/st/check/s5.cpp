@@ -12,7 +12,7 @@ namespace lineshaft::st {
 
 namespace {
 
-bool is_siemens(const Place& place) {
+bool has_instructions(const Place& place) {
     return place.source && place.dialect().has_s7_instructions;
 }
 
@@ -36,7 +36,7 @@ bool call_of_s5(Checking& c, Expression*& e, const Type& type, std::string_view 
 
 std::optional<const Type*> check_s5_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
-    if (!is_siemens(token.place) || token.quoted || token.local) return {};
+    if (!has_instructions(token.place) || token.quoted || token.local) return {};
     const auto object = read_s5_number(token.text);
     if (!object) return {};
     e = make_constant(c, *e, *object->type, {.integer = object->number});
@@ -45,13 +45,13 @@ std::optional<const Type*> check_s5_name(Checking& c, Expression*& e, const Type
 
 const Type* signal_of_s5(Checking& c, Expression*& e, const Type& type, const Type* expected) {
     const bool is_number = expected && (expected->is_integer() || expected->is_bits());
-    if (is_number || !is_siemens(e->place)) return &type;
+    if (is_number || !has_instructions(e->place)) return &type;
     return call_of_s5(c, e, type, "State") ? check(c, e) : nullptr;
 }
 
 bool rewrite_s5_reset(Checking& c, Statement*& s) {
     Expression* target = s->target;
-    if (s->op != Word::assign || target->kind != E::name || !is_siemens(target->place))
+    if (s->op != Word::assign || target->kind != E::name || !has_instructions(target->place))
         return false;
     const Variable* variable = find_variable(c, target->token);
     const auto object = variable || target->token.quoted || target->token.local

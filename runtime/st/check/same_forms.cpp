@@ -24,8 +24,8 @@ bool is_alike(const Type& a, const Type& b) {
 }  // namespace
 
 bool has_same_form(Checking& c, const Place& at, const Type& from, const Type& to) {
-    const bool is_siemens = at.source && at.dialect().vendor == Vendor::siemens;
-    if (!is_siemens || !is_alike(from, to)) return false;
+    const bool may_be = at.source && at.dialect().assigns_same_forms;
+    if (!may_be || !is_alike(from, to)) return false;
     if (from.kind == Kind::array && from.lower != to.lower)
         c.warn(code::type_does_not_fit, at,
                fmt::format("{} goes to {}, element by element from the first on", describe(from),

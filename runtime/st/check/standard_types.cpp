@@ -54,7 +54,7 @@ const Type* check_element_count(Checking& c, Expression*& e) {
 /// What is due, if that is an integer, in CODESYS one of at most 32 bits.
 const Type& type_of_bound(const Expression& call, const Type* expected) {
     const bool is_due = expected && expected->kind == Kind::integer &&
-                        (expected->bits <= 32 || call.place.dialect().vendor != Vendor::codesys);
+                        (expected->bits <= 32 || !call.place.dialect().bounds_have_32_bits);
     return is_due ? expected->plain() : dint_type;
 }
 

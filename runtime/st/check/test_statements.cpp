@@ -14,16 +14,6 @@ namespace {
 /// Each is compared by instructions of its own.
 constexpr Wide most_parts = 4096;
 
-Wide parts_of(const Type& type) {
-    if (type.kind == Kind::array)
-        return (Wide{type.upper} - type.lower + 1) * parts_of(*type.element);
-    if (type.kind != Kind::structure) return 1;
-    Wide parts = 0;
-    for (const Variable* member : type.members)
-        if (member->type) parts += parts_of(*member->type);
-    return parts;
-}
-
 bool is_whole(const Type& type) {
     return type.kind == Kind::integer || type.kind == Kind::bits || type.kind == Kind::boolean;
 }
@@ -128,7 +118,7 @@ bool check_compared(Checking& c, Expression& call) {
                       std::move(help));
     };
     if (first->kind == Kind::text && second->kind == Kind::text) return true;
-    if (parts && parts_of(*first) > most_parts)
+    if (parts && count_parts(*first) > most_parts)
         return refuse("these are more than 4096 parts: compare them in a FOR loop");
     if (parts && call.test == TestCall::assert_eq && same_type(*first, *second) && is_place(*a) &&
         is_place(*b))

@@ -45,7 +45,7 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const bool distance = op == Word::minus && same_type(a, b);
     const bool moves = (op == Word::plus || op == Word::minus) && b.kind == Kind::time &&
                        (a.kind == Kind::clock || a.kind == Kind::moment ||
-                        (a.kind == Kind::date && e->place.dialect().vendor == Vendor::codesys));
+                        (a.kind == Kind::date && e->place.dialect().dates_take_times));
     if (!distance && !moves && !joins)
         return refuse_operands(
             c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");

@@ -256,8 +256,7 @@ const Type* resolve_enumeration(Checking& c, const TypeText& text) {
 const Type* resolve_subrange(Checking& c, const TypeText& text) {
     const Type* base = resolve_name(c, text.name);
     if (!base) return nullptr;
-    const bool are_bits =
-        base->kind == Kind::bits && text.place.dialect().vendor != Vendor::siemens;
+    const bool are_bits = base->kind == Kind::bits && !text.place.dialect().subranges_are_integers;
     if (base->kind != Kind::integer && !are_bits)
         return c.fail(code::type_does_not_fit, text.place,
                       fmt::format("{} has no subranges", describe(*base)),
@@ -342,11 +341,10 @@ const Type* in_dialect(const Type* type, const Place& place) {
 
 /// A DATE and a DT of a Siemens controller begin with 1990-01-01.
 static const Type* begun_in_dialect(const Type* type, const Place& place) {
-    const bool is_siemens =
-        place.dialect().vendor == Vendor::siemens && !place.source->is_prelude();
+    const bool in_1990 = place.dialect().dates_begin_1990 && !place.source->is_prelude();
     const bool is_begun =
         (type->kind == Kind::date || type->kind == Kind::moment) && !type->counts_ns;
-    if (!is_siemens || !is_begun) return in_dialect(type, place);
+    if (!in_1990 || !is_begun) return in_dialect(type, place);
     static const auto begun = [](const Type& of) {
         Type made = of;
         made.initial.integer = 7305 * Wide{86'400'000'000'000};
@@ -369,7 +367,7 @@ const Type* resolve_parameter(Checking& c, const TypeText& text) {
 /// `axis` of the catalogue is a block of the program, and of a test; AXIS of a vendor's project is
 /// another type.
 static bool is_of_catalog_alone(const Checking& c, const Type& type, const Token& name) {
-    return type.is_object() && name.place.dialect().vendor != Vendor::none && !c.is_in_test();
+    return type.is_object() && !name.place.dialect().axes_are_types && !c.is_in_test();
 }
 
 const Type* resolve_name(Checking& c, const Token& name) {

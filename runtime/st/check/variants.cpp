@@ -24,10 +24,6 @@ std::int64_t number_of(Checking& c, const Type& type) {
     return found - known.begin() + 1;
 }
 
-Expression* dint_of(Checking& c, const Expression& like, std::int64_t value) {
-    return make_constant(c, like, dint_type, {.integer = value});
-}
-
 /// What is given, part by part.
 struct Given {
     std::int64_t type = 0, element = 0, size = 0;
@@ -81,7 +77,7 @@ Given given_as_variant(Checking& c, Expression* value) {
             .element = is_array ? number_of(c, type->innermost()) : 0,
             .size = is_array && count > 0 ? bytes / count : bytes,
             .place = make_call(c, "__SYSTEM.ADR", value),
-            .count = dint_of(c, *value, count),
+            .count = make_dint(c, *value, count),
             .is_bool = (is_array ? type->innermost() : *type).kind == Kind::boolean};
 }
 
@@ -99,7 +95,7 @@ bool asks_type(const Expression& e) {
 void take_type_name(Checking& c, Expression*& e) {
     if (!e || e->kind != E::name || e->type) return;
     if (!e->token.quoted && find_variable(c, e->token)) return;
-    if (const Type* type = resolve_name(c, e->token)) e = dint_of(c, *e, number_of(c, *type));
+    if (const Type* type = resolve_name(c, e->token)) e = make_dint(c, *e, number_of(c, *type));
 }
 
 }  // namespace
@@ -118,14 +114,14 @@ void become_variant(Checking& c, Expression*& value, const Type& type) {
         return;
     }
     if (!given && !is_null) return;
-    const Given parts = is_null ? Given{.place = value, .count = dint_of(c, *value, 0)}
+    const Given parts = is_null ? Given{.place = value, .count = make_dint(c, *value, 0)}
                                 : given_as_variant(c, value);
     if (!parts.place) return;
     Expression* made = make_call(c, *value, make_function_name(c, *value, "variant_of"),
-                                 {{.value = dint_of(c, *value, parts.type)},
-                                  {.value = dint_of(c, *value, parts.element)},
+                                 {{.value = make_dint(c, *value, parts.type)},
+                                  {.value = make_dint(c, *value, parts.element)},
                                   {.value = parts.place},
-                                  {.value = dint_of(c, *value, parts.size)},
+                                  {.value = make_dint(c, *value, parts.size)},
                                   {.value = parts.count},
                                   {.value = make_boolean(c, *value, parts.is_bool)}});
     if (!check(c, made)) return;
@@ -147,7 +143,7 @@ std::optional<const Type*> check_variant_call(Checking& c, Expression*& e) {
                                   : counts                ? "count"
                                                           : type_number);
         if (is_array)
-            made = make_binary(c, e->place, e->place, Word::unequal, made, dint_of(c, *e, 0));
+            made = make_binary(c, e->place, e->place, Word::unequal, made, make_dint(c, *e, 0));
         if (counts)
             made = make_call(c, *e, make_function_name(c, *e, "count_of_variant"), {{.value = of}});
         e = made;
@@ -162,7 +158,7 @@ std::optional<const Type*> check_variant_call(Checking& c, Expression*& e) {
     const Type& asked = of_elements && type->kind == Kind::array ? type->innermost()
                         : of_elements && is_one                  ? *type->element
                                                                  : *type;
-    e = dint_of(c, *e, number_of(c, asked));
+    e = make_dint(c, *e, number_of(c, asked));
     return check(c, e);
 }
 
@@ -178,7 +174,7 @@ void take_null_variant(Checking& c, Expression& comparison) {
         if (!is_variant(*of->type) || null->type != &null_type) return;
         of = make_member(c, of, type_number);
         check(c, of);
-        null = dint_of(c, *null, 0);
+        null = make_dint(c, *null, 0);
     };
     take(left, right);
     take(right, left);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "runtime/source/letters.hpp"
 #include "runtime/st/code/meaning.hpp"
 
 namespace lineshaft::st::meaning {
@@ -10,13 +11,6 @@ namespace {
 bool has_point(std::string_view text) {
     const std::size_t point = text.rfind('.');
     return point != text.npos && point > 0;
-}
-
-int digit_of(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return 16;
 }
 
 /// What is no digit is passed over. The digits of 2# and 8# are shifted in an int, which on x86

@@ -30,8 +30,7 @@ Slot emit_whole(Emission& e) {
     const Slot whole = e.emit(e.call.standard->op, e.value(0));
     const Place& place = e.call.place;
     const Dialect& dialect = place.dialect();
-    if (dialect.vendor == Vendor::matiec && e.call.standard->op == Op::truncate)
-        return cast(e, whole);
+    if (dialect.functions_are_in_c && e.call.standard->op == Op::truncate) return cast(e, whole);
     if (dialect.beyond_type == BeyondType::fault || place.source->is_prelude())
         return e.result(of_type(Op::round_sint, e.type()), whole);
     if (dialect.beyond_type == BeyondType::lowest_bits)
@@ -55,7 +54,7 @@ Op least(Emission& e) {
     return e.of_number(Op::min_lreal, Op::min_unsigned, Op::min_signed);
 }
 
-/// Of two of which one is no number the first is kept, in CODESYS the second.
+/// Where one of two is no number, the first is kept, in CODESYS the second.
 bool keeps_second(const Emission& e) {
     return e.call.place.dialect().extremes_keep_second;
 }

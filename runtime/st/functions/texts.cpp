@@ -6,16 +6,8 @@ namespace lineshaft::st {
 
 namespace {
 
-Vendor vendor_of(const Emission& e) {
-    return e.call.place.dialect().vendor;
-}
-
-bool is_of_codesys(const Emission& e) {
-    return vendor_of(e) == Vendor::codesys;
-}
-
-bool is_of_matiec(const Emission& e) {
-    return vendor_of(e) == Vendor::matiec;
+const Dialect& dialect_of(const Emission& e) {
+    return e.call.place.dialect();
 }
 
 /// A text that is put together from parts of others. What is given is computed before it begins.
@@ -32,7 +24,7 @@ struct Parts {
     }
     /// In SCL.
     void expect_above(std::int64_t limit, Slot number) {
-        if (is_siemens) need_above(limit, number);
+        if (dialect.negative_counts_clear) need_above(limit, number);
     }
     void begin() { made = e.new_text(); }
     void append(Slot from, Slot first, Slot count) const {
@@ -41,7 +33,7 @@ struct Parts {
     }
 
     Emission& e;
-    const bool is_siemens = vendor_of(e) == Vendor::siemens, is_codesys = is_of_codesys(e);
+    const Dialect& dialect = dialect_of(e);
     Slot zero = e.constant(0), one = e.constant(1), all = e.constant(1U << 30), most = all;
     Slot in = e.text(0);
     Slot made = 0;
@@ -50,7 +42,7 @@ struct Parts {
 /// CODESYS: what is given to LEN is a STRING(255).
 Slot emit_length(Emission& e) {
     const Slot text = e.text(0);
-    if (!is_of_codesys(e)) return e.result(Op::text_length, text, e.is_wide());
+    if (!dialect_of(e).texts_have_255) return e.result(Op::text_length, text, e.is_wide());
     const Slot length = e.emit(Op::text_length, text, e.is_wide());
     return e.result(Op::min_signed, length, e.constant(255));
 }
@@ -84,7 +76,7 @@ Slot emit_right(Emission& e) {
 Slot emit_middle(Emission& e) {
     Parts parts(e);
     const Slot count = e.value(1), place = e.value(2);
-    if (parts.is_siemens || parts.is_codesys) parts.need_above(0, place);
+    if (parts.dialect.middle_begins_at_one) parts.need_above(0, place);
     parts.begin();
     parts.append(parts.in, parts.difference(place, parts.one), count);
     return parts.made;
@@ -104,7 +96,7 @@ Slot emit_delete(Emission& e) {
 /// `all` characters that CODESYS puts behind the first `before`; 0 where there are not so many, or
 /// not more.
 Slot taken_by_codesys(Parts& parts, Slot before, Op is_within) {
-    if (!parts.is_codesys) return parts.all;
+    if (!parts.dialect.inserts_within_text) return parts.all;
     Emission& e = parts.e;
     const Slot length = e.emit(Op::text_length, parts.in, e.is_wide());
     return e.emit(Op::mul_lint, parts.all, e.emit(is_within, before, length));
@@ -125,7 +117,7 @@ Slot emit_insert(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), before = e.value(2);
     Slot taken = taken_by_codesys(parts, before, Op::le_signed);
-    if (parts.is_codesys)
+    if (parts.dialect.inserts_within_text)
         taken = e.emit(Op::mul_lint, taken, e.emit(Op::le_signed, parts.zero, before));
     return emit_replaced(parts, other, before, parts.zero, taken);
 }
@@ -134,14 +126,16 @@ Slot emit_replace(Emission& e) {
     Parts parts(e);
     const Slot other = e.text(1), count = e.value(2);
     const Slot before = parts.difference(e.value(3), parts.one);
-    const Slot taken = is_of_matiec(e) ? count : taken_by_codesys(parts, before, Op::lt_signed);
+    const bool is_in_c = dialect_of(e).functions_are_in_c;
+    const Slot taken = is_in_c ? count : taken_by_codesys(parts, before, Op::lt_signed);
     return emit_replaced(parts, other, before, count, taken);
 }
 
 Slot emit_find(Emission& e) {
     const Slot in = e.text(0);
     const Slot what = e.text(1);
-    if (is_of_matiec(e) && !e.is_wide()) return e.result(Op::matiec_text_find, in, what);
+    if (dialect_of(e).functions_are_in_c && !e.is_wide())
+        return e.result(Op::matiec_text_find, in, what);
     const Slot found = e.wanted_slot();
     e.put(Op::text_find, found, in, what, e.is_wide());
     return found;

@@ -31,19 +31,9 @@ Op bits_left(const Dialect& dialect, const Type& to, bool truncates) {
     return truncates ? Op::truncated_in_32 : Op::left_in_32;
 }
 
-bool is_of_codesys(const Dialect& dialect) {
-    return dialect.vendor == Vendor::codesys;
-}
-
-/// MatIEC's C library.
-bool is_of_c(const Expression& e) {
-    return e.place.dialect().vendor == Vendor::matiec;
-}
-
 /// TwinCAT stops where a register does not hold the number, and else keeps as many bits of it.
 bool keeps_bits_of_register(const Source* source) {
-    return source && is_of_codesys(source->dialect) &&
-           source->dialect.beyond_type == BeyondType::fault && !source->is_prelude();
+    return source && source->dialect.keeps_bits_of_register && !source->is_prelude();
 }
 
 Slot kept_of_register(Writing& w, Slot slot, const Type& to, Slot wanted) {
@@ -129,17 +119,13 @@ Slot convert_real_time(Writing& w, Slot slot, const Type& from, const Type& to, 
     return to.bits == 32 ? w.emit(Op::narrow, wanted, count) : count;
 }
 
-/// Where a DATE has 32 bits, of s.
-bool is_of_br(const Place& place) {
-    return place.source && place.dialect().vendor == Vendor::automation_studio;
-}
-
 /// A time is in ns as an integer of 64 bits, but in dialects that count those as all others.
 Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
     if (to.kind == Kind::boolean) return w.emit(Op::ne_word, wanted, slot, w.constant_slot(0));
     if (number.is_real()) return convert_real_time(w, slot, from, to, unit_of(time), wanted);
-    const bool in_days = time.kind == Kind::date && number.bits == 16 && !is_of_br(w.place);
+    const bool in_seconds = w.place.source && w.place.dialect().words_of_dates_count_seconds;
+    const bool in_days = time.kind == Kind::date && number.bits == 16 && !in_seconds;
     return number.bits == 64
                ? slot
                : convert_counted(w, slot, to, in_days ? of_days : unit_of(time), wanted);
@@ -148,7 +134,8 @@ Slot convert_time(Writing& w, Slot slot, const Type& from, const Type& to, Slot 
 /// MatIEC counts all times in seconds.
 bool is_of_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
-    return is_of_c(e) && from.is_time() != to.is_time() && to.kind != Kind::boolean;
+    return e.place.dialect().functions_are_in_c && from.is_time() != to.is_time() &&
+           to.kind != Kind::boolean;
 }
 
 Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Slot wanted) {
@@ -161,7 +148,8 @@ Slot convert_seconds(Writing& w, Slot slot, const Type& from, const Type& to, Sl
 bool is_cut_by_matiec(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const bool is_whole = to.is_integer() || (to.is_bits() && to.bits != from.bits);
-    return is_of_c(e) && from.is_real() && is_whole && !e.conversion.truncates;
+    return e.place.dialect().functions_are_in_c && from.is_real() && is_whole &&
+           !e.conversion.truncates;
 }
 
 Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
@@ -169,15 +157,6 @@ Slot cut_by_matiec(Writing& w, Slot real, const Type& to, Slot wanted) {
     const Slot whole = w.emit(Op::round_lint, none, real);
     const Slot cut = has_sign ? whole : w.emit(Op::max_signed, none, whole, w.constant_slot(0));
     return to.bits == 64 ? cut : w.emit(of_type(Op::wrap_sint, to), wanted, cut);
-}
-
-/// Written in SCL, and not for the prelude's own use.
-bool is_of_s7(const Place& place) {
-    return place.dialect().vendor == Vendor::siemens && !place.source->is_prelude();
-}
-
-bool is_of_s7(const Expression& e) {
-    return is_of_s7(e.place);
 }
 
 bool is_whole_number(const Type& type) {
@@ -188,8 +167,8 @@ bool is_whole_number(const Type& type) {
 bool counts_days(const Expression& e) {
     const Type &from = e.operands[0]->type->plain(), &to = e.type->plain();
     const Type &time = from.is_time() ? from : to, &number = from.is_time() ? to : from;
-    return is_of_s7(e) && from.is_time() != to.is_time() && time.kind == Kind::date &&
-           is_whole_number(number);
+    return e.place.dialect().dates_count_days && !e.place.source->is_prelude() &&
+           from.is_time() != to.is_time() && time.kind == Kind::date && is_whole_number(number);
 }
 
 /// A TIME, a TOD, a DT or a DATE and 64 bits are, in CODESYS also 16, which are no days there; the
@@ -208,15 +187,19 @@ bool is_counted(const Expression& e) {
 /// whole seconds, and DATE whole days.
 bool is_whole(const Expression& e) {
     const Type &from = *e.operands[0]->type, &to = e.type->plain();
-    const bool is_kind = to.kind == Kind::time || to.kind == Kind::clock || !is_of_s7(e);
-    return e.place.dialect().times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
+    const Dialect& dialect = e.place.dialect();
+    const bool is_kind =
+        to.kind == Kind::time || to.kind == Kind::clock || dialect.dates_count_seconds;
+    return dialect.times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
            !to.counts_ns && is_kind &&
-           (!from.is_time() || from.counts_ns || (from.kind != to.kind && !is_of_s7(e)));
+           (!from.is_time() || from.counts_ns ||
+            (from.kind != to.kind && dialect.dates_count_seconds));
 }
 
 /// It begins again at 2^32 ms or s, a TIME of SCL after 2^31 - 1 with the least one.
-Slot in_whole_units(Writing& w, Slot slot, const Type& from, const Type& to, bool has_sign,
+Slot in_whole_units(Writing& w, Slot slot, const Type& from, const Type& to, const Place& place,
                     Slot wanted) {
+    const bool has_sign = place.dialect().times_have_signs;
     const Slot unit = w.constant_slot(unit_of(to));
     const bool is_unsigned = from.is_unsigned_64() && from.is_time();
     Slot count = w.emit(is_unsigned ? Op::div_ulint : Op::div_lint, none, slot, unit);
@@ -238,7 +221,7 @@ Slot whole_time(Writing& w, const Expression& e, Slot slot, Slot wanted) {
         slot = convert_counted(w, slot, to, unit_of(to), none);
     else
         slot = convert(w, slot, from, to, false, none);
-    return in_whole_units(w, slot, from, to, is_of_s7(e), wanted);
+    return in_whole_units(w, slot, from, to, e.place, wanted);
 }
 
 /// MatIEC keeps only as many digits as there is room for, and has 0 of what has others than those
@@ -253,7 +236,7 @@ Slot suited_to_matiec(Writing& w, const Expression& e, Slot from) {
 
 Slot convert_bcd(Writing& w, const Expression& e, Slot wanted) {
     Slot from = value(w, *e.operands[0]);
-    if (is_of_c(e)) from = suited_to_matiec(w, e, from);
+    if (e.place.dialect().functions_are_in_c) from = suited_to_matiec(w, e, from);
     if (e.type->is_bits())
         return w.emit(Op::to_bcd, wanted, from, static_cast<Slot>(e.type->bits / 4));
     return w.emit(of_type(Op::wrap_sint, *e.type), wanted, w.emit(Op::from_bcd, none, from));
@@ -267,7 +250,7 @@ bool is_finer_than_ms(const Type* block, const Type& type, const Place& place) {
 }
 
 Slot whole_ms(Writing& w, Slot slot, const Place& place, Slot wanted) {
-    return in_whole_units(w, slot, time_type, time_type, is_of_s7(place), wanted);
+    return in_whole_units(w, slot, time_type, time_type, place, wanted);
 }
 
 Slot attempted(Writing& w, const Expression& e, Slot wanted) {
@@ -305,18 +288,21 @@ static Slot matiec_number_of_text(Writing& w, Slot text, const Type& type, Slot 
 }
 
 static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
-    const bool is_codesys = is_of_codesys(e.place.dialect());
-    const Slot groups = is_codesys || e.place.dialect().vendor == Vendor::none ? 1 : 0;
-    const bool is_s7 = is_of_s7(e);
+    const Dialect& dialect = e.place.dialect();
+    const Slot groups = dialect.number_of_text == NumberOfText::grouped_digits ? 1 : 0;
+    const bool is_s7 =
+        dialect.number_of_text == NumberOfText::of_s7 && !e.place.source->is_prelude();
     if (is_s7 && is_whole_number(*e.type)) return s7_integer_of(w, text, *e.type, wanted);
-    if (e.type->kind == Kind::boolean) return w.emit(Op::truth_of_text, wanted, text, is_codesys);
+    if (e.type->kind == Kind::boolean)
+        return w.emit(Op::truth_of_text, wanted, text, dialect.truth_may_go_on);
     if (e.type->is_character) {
         const Slot to = w.result(wanted);
         w.put(Op::text_character, to, text, w.constant_slot(1),
               TextRoom(1, e.type->bits == 16).number());
         return to;
     }
-    if (is_of_c(e)) return matiec_number_of_text(w, text, e.type->plain(), wanted);
+    if (dialect.number_of_text == NumberOfText::of_matiec)
+        return matiec_number_of_text(w, text, e.type->plain(), wanted);
     if (e.type->kind == Kind::real) {
         const Slot real = is_s7 ? w.emit(Op::s7_real_of_text, none, text)
                                 : w.emit(Op::real_of_text, none, text, groups);
@@ -324,7 +310,7 @@ static Slot of_text(Writing& w, const Expression& e, Slot text, Slot wanted) {
     }
     if (e.type->is_time()) {
         const Slot time = w.emit(Op::time_of_text, none, text, static_cast<Slot>(e.type->kind));
-        return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, is_s7, wanted) : time;
+        return is_whole(e) ? in_whole_units(w, time, time_type, *e.type, e.place, wanted) : time;
     }
     return w.emit(of_type(Op::wrap_sint, e.type->plain()), wanted,
                   w.emit(Op::integer_of_text, none, text, groups));
@@ -355,7 +341,9 @@ Slot converted(Writing& w, const Expression& e, Slot wanted) {
         return convert_counted(w, value(w, operand), to,
                                in_days ? of_days : unit_of(given.is_time() ? given : to), wanted);
     Slot from = value(w, operand);
-    if (e.type->kind == Kind::boolean && is_of_s7(e) && is_whole_number(*operand.type))
+    const bool is_lowest_bit =
+        e.place.dialect().truth_is_lowest_bit && !e.place.source->is_prelude();
+    if (e.type->kind == Kind::boolean && is_lowest_bit && is_whole_number(*operand.type))
         return w.emit(Op::and_bits, wanted, from, w.constant_slot(1));
     if (e.conversion.rounds_away) from = w.emit(Op::round_away, none, from);
     return convert(w, from, *operand.type, *e.type, e.conversion.truncates, wanted);

@@ -69,11 +69,8 @@ void fill_paths_of(Writing& w, const Paths& paths, Writing::Image& image, std::u
     }
 }
 
-std::string path_of_application(const Token& name) {
-    const bool is_of_codesys = name.place.source &&
-                               name.place.dialect().vendor == Vendor::codesys &&
-                               &name.place.dialect() != &twincat;
-    return is_of_codesys ? "Device.Application" : "Project";
+std::string_view path_of_application(const Token& name) {
+    return name.place.source ? name.place.dialect().instance_root : iec.instance_root;
 }
 
 }  // namespace

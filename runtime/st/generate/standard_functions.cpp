@@ -92,9 +92,9 @@ struct Call : Emission {
         const Slot range = w.new_temporary(2);
         w.put(Op::move, range, first);
         w.put(Op::move, range + 1, count);
-        const bool is_codesys = call.place.dialect().vendor == Vendor::codesys;
+        const bool has_255 = call.place.dialect().texts_have_255;
         const auto most =
-            static_cast<std::uint32_t>(is_codesys ? longest_result_of_codesys : longest_result);
+            static_cast<std::uint32_t>(has_255 ? longest_result_of_codesys : longest_result);
         w.put(Op::text_append, to, from, range, TextRoom(most, is_wide()).number());
     }
     void reset_timer(std::size_t i) override { st::reset_timer(w, given(i)); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
@@ -19,7 +20,7 @@ void write_character(Writing& w, const Statement& s) {
     const Dialect& dialect = s.target->place.dialect();
     Slot room = capacity_of(w, at, *text.type);
     const bool may_miss = dialect.characters_may_be_missing,
-               grows = !may_miss && dialect.vendor == Vendor::none;
+               grows = dialect.texts_grow_by_characters;
     if (may_miss || grows) {
         const TextRoom any(0, false), rule = grows ? any.that_grows() : any.that_may_miss();
         room = w.emit(Op::or_bits, none, room, w.constant_slot(rule.number()));
@@ -44,14 +45,64 @@ void assign_standard(Writing& w, const Statement& s) {
     copy(w, to, locate(w, *s.value), s.target->type->slots - (w.has_tests ? 1 : 0));
 }
 
-void write_assignment(Writing& w, const Statement& s) {
-    if (s.target->kind == Expression::Kind::bit)
-        return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
-    if (s.target->is_character()) return write_character(w, s);
+/// Slots of a value that an axis or a group links, see BlockType::add_links.
+struct LinkedSlots {
+    std::uint32_t first = 0, count = 0;
+};
+
+void find_links(Writing& w, const Type& type, std::uint32_t at, std::vector<LinkedSlots>& found) {
+    if (type.kind == Kind::array) {
+        const std::size_t before = found.size();
+        find_links(w, *type.element, at, found);
+        if (found.size() == before) return;
+        for (std::int64_t i = type.lower + 1; i <= type.upper; ++i) {
+            at += slots_of(w, *type.element);
+            find_links(w, *type.element, at, found);
+        }
+    }
+    if (type.kind == Kind::standard && type.standard->add_links) {
+        std::vector<LinkedPart> parts;
+        type.standard->add_links(parts, *type.standard);
+        for (const LinkedPart& part : parts)
+            found.push_back({at + static_cast<std::uint32_t>(part.place / 8),
+                             static_cast<std::uint32_t>(part.bytes / 8)});
+    }
+    const bool is_block = type.kind == Kind::block;
+    if (!is_block && type.kind != Kind::structure) return;
+    for (const Variable* member : is_block ? all_variables(*type.routine) : type.members)
+        if (member->type && member->space == Space::frame)
+            find_links(w, *member->type, at + member->slot, found);
+}
+
+void assign_value(Writing& w, const Statement& s) {
     const Type& type = *s.target->type;
     if (type.kind == Kind::block && w.code.has_kinds) return assign_instance(w, s);
     if (type.kind == Kind::standard) return assign_standard(w, s);
     assign(w, locate(w, *s.target), type, *s.value);
+}
+
+/// An instance that begins anew keeps the jobs of its commands, which are in lists of others: what
+/// it has told them goes on, and each start of a command has a number of its own.
+void assign_but_links(Writing& w, const Statement& s, std::span<const LinkedSlots> links) {
+    const Location to = as_address(w, locate(w, *s.target));
+    std::vector<Slot> kept;
+    for (const LinkedSlots& link : links) {
+        kept.push_back(w.new_temporary(link.count));
+        copy(w, {Mode::slot, kept.back()}, behind(to, link.first), link.count);
+    }
+    assign_value(w, s);
+    for (std::size_t i = 0; i < links.size(); ++i)
+        copy(w, behind(to, links[i].first), {Mode::slot, kept[i]}, links[i].count);
+}
+
+void write_assignment(Writing& w, const Statement& s) {
+    if (s.target->kind == Expression::Kind::bit)
+        return store_bits(w, *s.target, value_before(w, *s.value, *s.target));
+    if (s.target->is_character()) return write_character(w, s);
+    std::vector<LinkedSlots> links;
+    if (!s.target->type->is_scalar()) find_links(w, *s.target->type, 0, links);
+    if (links.empty()) return assign_value(w, s);
+    assign_but_links(w, s, links);
 }
 
 void jump_unless(Writing& w, const Expression& condition, Jumps& to) {

@@ -39,10 +39,8 @@ meaning::RealForm form_of_reals(const Dialect& dialect) {
     return shortest;
 }
 
-TimeForm form_of_time(const Type& type, Vendor vendor) {
-    if (!type.counts_ns && vendor == Vendor::matiec) return TimeForm::of_matiec;
-    if (!type.counts_ns || vendor == Vendor::siemens) return TimeForm::plain;
-    return vendor == Vendor::codesys ? TimeForm::of_long_in_codesys : TimeForm::of_long;
+TimeForm form_of_time(const Type& type, const Dialect& dialect) {
+    return type.counts_ns ? dialect.text_of_long_time : dialect.text_of_time;
 }
 
 /// The name of the value goes to the text, which stays where the number is that of none.
@@ -115,17 +113,17 @@ Slot text_conversion(Writing& w, const Expression& e) {
         w.put(Op::move, text + 1, number);
         return made;
     }
-    if (e.place.dialect().vendor == Vendor::matiec)
+    if (e.place.dialect().functions_are_in_c)
         if (const auto op = text_op_of_matiec(from.type->plain())) {
             w.put(*op, made, number);
             return made;
         }
     if (from.type->is_time()) {
-        const TimeText time{from.type->kind, form_of_time(*from.type, e.place.dialect().vendor),
+        const TimeText time{from.type->kind, form_of_time(*from.type, e.place.dialect()),
                             from.type->is_unsigned_64()};
         w.put(Op::text_of_time, made, number, time.number());
         if (from.type->kind == Type::Kind::time && !from.type->counts_ns &&
-            e.place.dialect().vendor == Vendor::codesys)
+            e.place.dialect().no_time_is_ms)
             write_no_time(w, number, made);
         return made;
     }

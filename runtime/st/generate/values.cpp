@@ -105,7 +105,7 @@ bool is_compared_by_place(const Expression* left, const Expression* right) {
 /// `<>` of REALs in SCL, where it is FALSE, too, of what is no number.
 bool is_false_of_nan(const Expression& e) {
     return e.op == Word::unequal && e.operands[0]->type->is_real() &&
-           e.place.dialect().vendor == Vendor::siemens;
+           e.place.dialect().nan_is_not_unequal;
 }
 
 Slot comparison(Writing& w, const Expression& e, Slot wanted) {

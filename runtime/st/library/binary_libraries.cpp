@@ -10,7 +10,7 @@
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/st/functions/standard.hpp"
-#include "runtime/st/library/library_names.hpp"
+#include "runtime/st/library/library_index.hpp"
 #include "runtime/st/prelude/standard_source.hpp"
 #include "runtime/st/types/elementary.hpp"
 #include "runtime/st/vendors/names.hpp"
@@ -71,9 +71,8 @@ class Known {
     void note_version(const Pou& unit) {
         const std::string library = library_of(unit.name);
         for (const LibraryFile& file : catalog_.libraries()) {
-            const NameSet words = same_name(file.library, library)
-                                      ? LibraryNames::words_of(file, unit.name.text)
-                                      : NameSet();
+            const NameSet words =
+                same_name(file.library, library) ? words_of(file, unit.name.text) : NameSet();
             const auto is_missing = [&](const Declaration* pin) {
                 return !words.empty() && !words.contains(pin->name.text);
             };
@@ -89,8 +88,7 @@ class Known {
         if (!is_new) return it->second;
         for (const LibraryFile& file : catalog_.libraries())
             if (same_name(file.library, library))
-                for (const std::string_view name : LibraryNames::declared_in(file))
-                    it->second.insert(name);
+                for (const std::string_view name : declared_in(file)) it->second.insert(name);
         return it->second;
     }
 

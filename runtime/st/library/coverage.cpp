@@ -57,7 +57,7 @@ std::string branches_text(const Points& points) {
     return text + fmt::format("BRF:{}\nBRH:{}\n", points.size(), hit(points));
 }
 
-/// Of several statements in a line the one that was executed most.
+/// A line was executed as often as that one of its statements that was executed most.
 std::string lines_text(const Points& points) {
     std::map<int, Counted> lines;
     for (const auto& [key, point] : points) {

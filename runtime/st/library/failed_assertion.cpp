@@ -38,7 +38,7 @@ std::string written(const Assertion& failed, Place at) {
     return failed.part.empty() ? text : fmt::format("{} at {}", text, failed.part);
 }
 
-/// Of TcUnit, if it is one of that: a program that calls RUN may have many.
+/// It is named where it is one of TcUnit: a program that calls RUN may have many.
 std::string name_of_test(const Compiled& made, const std::byte* root, const Context& context) {
     if (made.checked.globals.empty()) return {};
     const auto number = read<std::uint64_t>(root + 8 * std::size_t{globals_slot});
@@ -55,7 +55,7 @@ class Failed {
         : assertion_(assertion), stop_(stop), root_(root), context_(context), frame_(frame) {}
 
     std::string what() const;
-    /// Of the user; empty: none.
+    /// What the user wrote; empty: nothing.
     std::string message() const {
         const Instruction& behind = *(&stop_ + 1);
         return assertion_.has_message ? printable(text_at(word(behind.a))) : std::string();

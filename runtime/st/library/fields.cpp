@@ -70,8 +70,8 @@ class FieldWriter {
         reference.required = true;
     }
 
-    /// Of a data block, whose variables are all its own. What a library keeps many of is nobody
-    /// else's.
+    /// It is one of a data block, whose variables are all its own. What a library keeps many of
+    /// is nobody else's.
     void write_member(const Variable& member) {
         const bool are_librarys =
             member.name.place.source && member.name.place.source->is_library() &&
@@ -199,14 +199,6 @@ class FieldWriter {
             kind_.shortened.push_back(made_.names.emplace_back(begin_));
     }
 
-    static bool has_handle(const Type& type) {
-        const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
-        if (type.kind == Kind::array) return has_handle(*type.element);
-        if (type.kind == Kind::structure) return std::ranges::any_of(type.members, has);
-        if (type.kind == Kind::block) return std::ranges::any_of(all_variables(*type.routine), has);
-        return type.kind == Kind::handle;
-    }
-
     /// `VAR axis : AXIS_REF` may be given one of the program's, as TwinCAT links it to one of its
     /// numerical control. What a caller gives to a part is no field.
     void write_handle(const Type& type, std::size_t offset, const std::string& name,
@@ -289,7 +281,7 @@ class FieldWriter {
     Count fields_, texts_;
 };
 
-/// Of all that `routine` runs, the blocks of the program that are named.
+/// Adds the blocks of the program that are named in all that `routine` runs.
 void find_objects(const Routine& routine, std::set<const Routine*>& seen, std::set<int>& objects) {
     if (!seen.insert(&routine).second) return;
     objects.insert(routine.objects.begin(), routine.objects.end());

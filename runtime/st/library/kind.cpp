@@ -249,12 +249,12 @@ void visit_standard(const Type& type, const Do& act) {
     });
 }
 
-void add_links(std::vector<std::size_t>& places, const BlockType& block) {
+void add_links(std::vector<LinkedPart>& parts, const BlockType& block) {
     const auto& kind = *static_cast<const KindContext*>(block.context);
     visit_standard(*kind.type, [&](const BlockType& inner, std::size_t offset) {
-        const std::size_t before = places.size();
-        if (inner.add_links) inner.add_links(places, inner);
-        for (std::size_t i = before; i < places.size(); ++i) places[i] += offset;
+        const std::size_t before = parts.size();
+        if (inner.add_links) inner.add_links(parts, inner);
+        for (std::size_t i = before; i < parts.size(); ++i) parts[i].place += offset;
     });
 }
 

@@ -28,7 +28,7 @@ bool is_for_pictures(std::string_view library) {
     return lower(library).starts_with("system_visu") || same_name(library, "VisuSymbols");
 }
 
-/// Of those whose names are here without them, too. A library that is here in parts says so.
+/// Also one whose names are here without it. A library that is here in parts says so.
 bool is_here(const Catalog& standard, std::string_view library) {
     if (is_vendor_library(library) || is_for_pictures(library)) return true;
     const LibraryFile* file = find_called(standard.libraries(), library, &LibraryFile::library);

@@ -1,9 +1,7 @@
 #include "runtime/st/library/library_names.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <functional>
-#include <mutex>
 
 #include <fmt/format.h>
 
@@ -14,43 +12,7 @@
 
 namespace lineshaft::st {
 
-/// Of all files.
-struct LibraryNames::Index {
-    NameMap<std::vector<const LibraryFile*>> by_name;  ///< those that are looked for
-    NameMap<NameSet> values;        ///< of enumerations, and the libraries that have them
-    NameMap<NameSet> enumerations;  ///< of values
-    NameMap<const LibraryFile*> by_full_name;
-    NameMap<const LibraryFile*> of_siemens;  ///< that Siemens' sources name without their library
-    NameSet of_catalog;  ///< names that are not looked for unless their library is taken
-    NameMap<std::vector<const LibraryFile*>> libraries;
-    NameSet firsts;  ///< what the libraries' names begin with, up to a point
-    std::deque<std::string> full_names;
-};
-
 namespace {
-
-constexpr std::string_view of_names =
-    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
-
-bool is_of_name(char c) {
-    return of_names.find(c) != of_names.npos;
-}
-
-std::string_view first_word(std::string_view& line) {
-    line.remove_prefix(std::min(line.find_first_of(of_names), line.size()));
-    const std::string_view word = line.substr(0, line.find_first_not_of(of_names));
-    line.remove_prefix(word.size());
-    return word;
-}
-
-bool is_modifier(std::string_view word) {
-    return word == "ABSTRACT" || word == "FINAL" || word == "PUBLIC" || word == "INTERNAL";
-}
-
-/// Of TcUnit, which is known by its others: these are variables of many programs.
-bool is_everyday(std::string_view name) {
-    return name == "RUN" || name == "TEST";
-}
 
 /// Whole numbers, but LREALs in TwinCAT's library.
 bool is_of_twincat_alone(std::string_view name) {
@@ -69,92 +31,9 @@ bool is_of_mapp(std::string_view library) {
 bool is_of_softmotion(const Declaration& declared) {
     if (!declared.type || !declared.type->name.place.source) return false;
     const Token& type = declared.type->name;
-    return type.place.dialect().vendor == Vendor::codesys && same_name(type.text, "AXIS_REF_SM3");
-}
-
-bool is_helper(std::string_view name) {
-    return name.front() >= 'a' && name.front() <= 'z';
-}
-
-/// Kinds, their parts, and the values of these: `axis.Status` is not looked for alone.
-NameSet names_of(const Catalog& catalog) {
-    NameSet names;
-    for (const BlockType& type : catalog.types()) {
-        names.insert({type.name, type.handle});
-        for (const Field& field : type.fields) {
-            names.insert(field.name);
-            names.insert(field.names.begin(), field.names.end());
-        }
-    }
-    return names;
-}
-
-struct DeclaredName {
-    std::string_view name;
-    bool is_value;  ///< of an enumeration
-};
-
-/// By the lines that they stand in.
-std::vector<DeclaredName> names_in(const LibraryFile& file) {
-    std::vector<DeclaredName> names;
-    bool in_values = false, in_globals = false;
-    for (std::string_view rest = file.text; !rest.empty();) {
-        std::string_view line = rest.substr(0, rest.find('\n'));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-        const bool is_inside = line.starts_with("    ") && !line.starts_with("     ");
-        const bool ends = line.starts_with(")") || line.starts_with("END_");
-        if (ends) in_values = in_globals = false;
-        if ((in_values || in_globals) && is_inside && is_of_name(line[4]))
-            names.push_back({first_word(line), in_values});
-        if (line.empty() || is_inside || ends || !is_of_name(line[0])) continue;
-        const std::string_view kind = first_word(line);
-        in_globals = in_globals || kind == "VAR_GLOBAL";
-        const bool is_type = kind == "TYPE";
-        if (!is_type && kind != "FUNCTION" && kind != "FUNCTION_BLOCK" && kind != "CLASS" &&
-            kind != "INTERFACE")
-            continue;
-        std::string_view name = first_word(line);
-        while (is_modifier(name)) name = first_word(line);
-        const bool is_part = line.starts_with('.');  // of "AXIS_REF.fSetPosition"
-        if (is_part) name = first_word(line);
-        if (kind != "FUNCTION" || is_part || !is_helper(name)) names.push_back({name, false});
-        in_values = is_type && line.ends_with("(");
-    }
-    return names;
-}
-
-LibraryNames::Index make_index(const Catalog& catalog) {
-    LibraryNames::Index index;
-    index.of_catalog = names_of(catalog);
-    for (const LibraryFile& file : catalog.libraries()) {
-        index.libraries[file.library].push_back(&file);
-        index.firsts.insert(file.library.substr(0, file.library.find('.')));
-        std::string_view enumeration;
-        for (const auto& [name, is_value] : names_in(file)) {
-            if (is_value) {
-                index.values[name].insert(file.library);
-                index.enumerations[name].insert(enumeration);
-            } else {
-                enumeration = name;
-            }
-            const std::string& full =
-                index.full_names.emplace_back(fmt::format("{}.{}", file.library, name));
-            index.by_full_name.emplace(full, &file);
-            if (file.library == siemens_motion || file.library == siemens_step7)
-                index.of_siemens.emplace(name, &file);
-            if (is_open(file) && !is_everyday(name)) index.by_name[name].push_back(&file);
-        }
-    }
-    return index;
-}
-
-const LibraryNames::Index& index_of(const Catalog& catalog) {
-    static std::mutex mutex;
-    static std::map<const LibraryFile*, LibraryNames::Index> made;
-    const std::lock_guard lock(mutex);
-    const LibraryFile* files = catalog.libraries().data();
-    const auto it = made.find(files);
-    return it != made.end() ? it->second : made.emplace(files, make_index(catalog)).first->second;
+    const Libraries theirs = type.place.dialect().libraries;
+    return (theirs == Libraries::codesys || theirs == Libraries::twincat) &&
+           same_name(type.text, "AXIS_REF_SM3");
 }
 
 /// Names that users declare so that all see them.
@@ -173,17 +52,6 @@ NameSet declared_names(const Tree& tree) {
     return names;
 }
 
-/// A block, or a structure, with its parts.
-std::string_view block_in(const LibraryFile& file, std::string_view name) {
-    const auto unit_in = [&](const std::string& head, std::string_view end) {
-        const std::size_t begin = file.text.find(head);
-        const std::string_view unit = file.text.substr(std::min(begin, file.text.size()));
-        return unit.substr(0, unit.find(end));
-    };
-    const auto block = unit_in(fmt::format("FUNCTION_BLOCK {}\n", name), "END_FUNCTION_BLOCK");
-    return block.empty() ? unit_in(fmt::format("TYPE {} : STRUCT\n", name), "END_STRUCT") : block;
-}
-
 NameSet declared_namespaces(const Tree& tree) {
     NameSet paths;
     for (const auto& [source, scopes] : tree.scopes)
@@ -199,20 +67,6 @@ LibraryNames::LibraryNames(const Catalog& catalog, const std::vector<LibraryRefe
     for (const LibraryReference& reference : references) references_.insert(reference.name);
 }
 
-std::vector<std::string_view> LibraryNames::declared_in(const LibraryFile& file) {
-    std::vector<std::string_view> names;
-    for (const DeclaredName& declared : names_in(file)) names.push_back(declared.name);
-    return names;
-}
-
-NameSet LibraryNames::words_of(const LibraryFile& file, std::string_view name) {
-    NameSet words;
-    std::string_view unit = block_in(file, name);
-    for (std::string_view word = first_word(unit); !word.empty(); word = first_word(unit))
-        words.insert(word);
-    return words;
-}
-
 void LibraryNames::note_libraries(const Tokens& tokens) {
     if (catalog_.libraries().empty()) return;
     for (std::size_t i = 0; i < tokens.tokens.size(); ++i) {
@@ -225,13 +79,14 @@ void LibraryNames::note_libraries(const Tokens& tokens) {
 void LibraryNames::note(const Token& name) {
     const bool is_plain = !name.quoted && !name.local && name.place.source;
     if (!is_plain) return;
-    if (&name.place.dialect() == &scl || reading_ == siemens_motion) {
+    const Libraries theirs = name.place.dialect().libraries;
+    if (theirs == Libraries::siemens || reading_ == siemens_motion) {
         const auto own = index_.of_siemens.find(name.text);
         if (own != index_.of_siemens.end()) of_siemens_.insert(own->first);
         return;
     }
     const auto it = index_.by_name.find(name.text);
-    const bool is_twincat = &name.place.dialect() == &twincat;
+    const bool is_twincat = theirs == Libraries::twincat;
     if (it == index_.by_name.end() || (is_of_twincat_alone(it->first) && !is_twincat)) return;
     const bool is_plcopens = it->second.front()->library == plcopen_enumerations;
     const bool may_be_plcopens = reading_.empty() && !name.place.dialect().is_loose;
@@ -241,8 +96,8 @@ void LibraryNames::note(const Token& name) {
     names_.insert(it->first);
     if (!reading_.empty()) of_libraries_.insert(it->first);
     if (is_twincat) of_twincat_.insert(it->first);
-    if (name.place.dialect().vendor == Vendor::matiec) of_matiec_.insert(it->first);
-    const bool in_studio = name.place.dialect().vendor == Vendor::automation_studio;
+    if (theirs == Libraries::matiec) of_matiec_.insert(it->first);
+    const bool in_studio = theirs == Libraries::automation_studio;
     if (in_studio || is_of_mapp(reading_)) of_mapp_.insert(it->first);
     if (in_studio) of_studio_.insert(it->first);
 }
@@ -305,7 +160,8 @@ void LibraryNames::note_qualified(const Tokens& tokens, std::size_t at) {
 std::string_view LibraryNames::block_of(const Declaration& declared) const {
     if (!declared.type) return {};
     const Token& name = declared.type->name;
-    const bool is_of_siemens = name.place.source && &name.place.dialect() == &scl;
+    const bool is_of_siemens =
+        name.place.source && name.place.dialect().libraries == Libraries::siemens;
     if (is_of_siemens) {
         const auto it = index_.of_siemens.find(name.text);
         return it == index_.of_siemens.end() ? std::string_view() : it->first;
@@ -343,7 +199,7 @@ void LibraryNames::note_pins(const Tree& tree) {
     }
 }
 
-/// Of the pins that the sources name of theirs; empty where they name none, or it is no block.
+/// How many it has of those that the sources name; empty where they name none, or it is no block.
 std::optional<std::size_t> LibraryNames::pins_of(const LibraryFile& file,
                                                  std::string_view name) const {
     const NameSet* named = find_in(pins_, name);
@@ -380,13 +236,13 @@ bool LibraryNames::names_values_of_plcopen() const {
 
 /// A value of an enumeration whose library the sources have not asked for.
 bool LibraryNames::is_hidden(const LibraryFile& file, std::string_view name) const {
-    const NameSet* libraries = find_in(index_.values, name);
-    if (!libraries || !libraries->contains(file.library)) return false;
+    const LibraryIndex::Value* value = find_in(index_.values, name);
+    if (!value || !value->libraries.contains(file.library)) return false;
     const auto is_named = [&](std::string_view enumeration) {
         const auto it = index_.by_name.find(enumeration);
         return it != index_.by_name.end() && names_.contains(it->first);
     };
-    if (std::ranges::any_of(index_.enumerations.at(name), is_named)) return false;
+    if (std::ranges::any_of(value->enumerations, is_named)) return false;
     const bool is_of_twincat = file.library.starts_with("Tc");
     const bool is_foreign = is_of_twincat || file.library.starts_with("SM3_");
     const bool is_with_all =

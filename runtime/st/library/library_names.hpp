@@ -8,6 +8,7 @@
 
 #include "runtime/model/catalog.hpp"
 #include "runtime/model/library_reference.hpp"
+#include "runtime/st/library/library_index.hpp"
 #include "runtime/st/syntax/lexer.hpp"
 #include "runtime/st/syntax/tree.hpp"
 
@@ -27,7 +28,7 @@ namespace lineshaft::st {
 ///   - for a name in SCL that Siemens' motion library has, unless the sources name more pins of it
 ///     that the catalogue's block has;
 ///   - for a name that a taken file uses: of its own library, if that has it.
-/// Of several libraries that have a name, the one is meant whose block of that name has most of the
+/// Where several libraries have a name, the one is meant whose block of that name has most of the
 /// pins, or members, that the sources name of it, then one that is taken anyway, then the first; of
 /// those alone that the project refers to, where there is one. A block that has nothing of what
 /// they name of theirs is not meant, nor SoftMotion's in a file of TwinCAT's, nor one that has less
@@ -53,16 +54,6 @@ class LibraryNames {
     /// A file that was taken uses the prelude.
     bool use_standard_source() const { return uses_standard_source_; }
 
-    /// What a file declares for others, in its order: names of types, values of enumerations, units
-    /// and global variables, by the lines that they stand in.
-    static std::vector<std::string_view> declared_in(const LibraryFile& file);
-
-    /// The words of a block, or of a structure, of a file: among them its pins, or members. Empty
-    /// where it is none, or has a base, whose parts stand elsewhere.
-    static NameSet words_of(const LibraryFile& file, std::string_view name);
-
-    struct Index;
-
   private:
     void note(const Token& name);
     void note_extended(const Token& name);
@@ -83,7 +74,7 @@ class LibraryNames {
     void read(const LibraryFile& file, Tree& tree, Diagnostics& out);
 
     const Catalog& catalog_;
-    const Index& index_;
+    const LibraryIndex& index_;
     NameSet references_;
     bool misses_some_;
     std::size_t types_ = 0, pous_ = 0, expressions_ = 0,

@@ -79,7 +79,7 @@ class Walk {
         found_.push_back({path, &type, 8 * slot, 8 * slots_of(type)});
     }
 
-    /// Of so many numbers that it is kept as one.
+    /// It has so many numbers that it is kept as one.
     static bool is_long_list(const Type& array) {
         return array.innermost().is_scalar() && slots_of(array) > most_elements;
     }

@@ -199,7 +199,7 @@ class Suites {
         return false;
     }
 
-    /// Of the tests that are not finished those that ran fail with it.
+    /// The tests that ran and are not finished fail with it.
     void note_fault(std::size_t suite, const TestResult& result) {
         const auto open = open_tests(suite);
         for (const std::int64_t test : open) failed_.emplace(test, result);

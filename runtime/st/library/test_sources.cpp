@@ -33,7 +33,7 @@ std::size_t nearness(const std::string& a, const std::string& b) {
     return slash == std::string::npos ? 0 : slash + 1;
 }
 
-/// Of `a.b.T` also `b.T` and `T`, each with the whole.
+/// Adds `b.T` and `T` of `a.b.T`, too, each with the whole.
 void add_declared(std::multimap<std::string, std::string>& to, std::string_view space,
                   std::string_view name) {
     const std::string full =
@@ -211,7 +211,7 @@ std::vector<const SourcePool::Entry*> SourcePool::nearest(const std::string& nam
         if (!known || nearness(entry.file->path, to) > nearness(known->file->path, to))
             known = &entry;
     };
-    // Of a project of another tool `Planner.Otg` is Otg, where Planner is another project.
+    // In a project of another tool `Planner.Otg` is Otg, where Planner is another project.
     const std::size_t point = user.file->excerpts.empty() ? name.npos : name.find('.');
     const std::string plain = point == name.npos ? name : name.substr(point + 1);
     std::set<std::size_t> declaring;
@@ -321,7 +321,7 @@ void SourcePool::follow(std::vector<const Entry*>& chosen, const std::string& to
     }
 }
 
-/// Of all but the first, which is who asks.
+/// Leaves out the first, which is who asks.
 std::vector<std::shared_ptr<const SourceFile>> SourcePool::files_of(
     const std::vector<const Entry*>& chosen) {
     std::vector<std::shared_ptr<const SourceFile>> files;

@@ -78,7 +78,7 @@ void join_declared_apart(Tree& tree) {
 void give_actions_to_blocks(Tree& tree) {
     for (std::size_t i = 0; i < tree.units.size();) {
         Pou* action = tree.units[i++];
-        if (!action->is_action || &action->place.dialect() != &automation_studio) continue;
+        if (!action->is_action || !action->place.dialect().actions_are_of_callers) continue;
         Pou* block = runner_of(tree, *action);
         if (!block) continue;
         action->kind = PouKind::method;

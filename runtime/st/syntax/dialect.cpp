@@ -19,12 +19,20 @@ const Dialect iec = {.sign_precedes_power = true,
                      .loops_begin_narrowed = true,
                      .references_take_addresses = true,
                      .ampersands_may_be_two = true,
-                     .ignores_excess_values = true};
+                     .ignores_excess_values = true,
+                     .axes_are_types = true,
+                     .variables_hide_types = true,
+                     .this_calls_methods = true,
+                     .methods_may_leave_out_inputs = true,
+                     .any_takes_literals = true,
+                     .texts_grow_by_characters = true,
+                     .number_of_text = NumberOfText::grouped_digits};
 
 const Dialect simatic_ax = [] {
     Dialect made = iec;
     made.literals_are_characters = made.characters_may_be_missing = true;
     made.inputs_may_be_left_out = true;
+    made.texts_grow_by_characters = false;
     return made;
 }();
 
@@ -37,6 +45,14 @@ const Dialect automation_studio = [] {
     made.most_aligned = 4;
     made.text_length = 80;
     made.vendor = Vendor::automation_studio;
+    made.libraries = Libraries::automation_studio;
+    made.axes_are_types = made.variables_hide_types = made.this_calls_methods = false;
+    made.methods_may_leave_out_inputs = made.any_takes_literals = false;
+    made.texts_grow_by_characters = false;
+    made.number_of_text = NumberOfText::digits;
+    made.takes_what_others_refuse = made.actions_are_of_callers = made.times_take_numbers = true;
+    made.words_of_dates_count_seconds = made.in_outs_take_any_text = true;
+    made.references_take_numbers = true;
     made.ampersands_may_be_two = false;
     made.open_texts_end_with_lines = made.texts_end_at_zero = true;
     made.beyond_type = BeyondType::left_in_register;
@@ -64,6 +80,24 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .has_sections_of_exports = true,
                          .texts_end_at_zero = true,
                          .texts_have_any_length = true,
+                         .libraries = Libraries::codesys,
+                         .takes_what_others_refuse = true,
+                         .number_of_text = NumberOfText::grouped_digits,
+                         .text_of_long_time = TimeForm::of_long_in_codesys,
+                         .no_time_is_ms = true,
+                         .truth_may_go_on = true,
+                         .texts_have_255 = true,
+                         .middle_begins_at_one = true,
+                         .inserts_within_text = true,
+                         .literals_wrap = true,
+                         .underlines_may_repeat = true,
+                         .long_numbers_become_real = true,
+                         .bounds_have_32_bits = true,
+                         .dates_take_times = true,
+                         .blocks_begin_with_methods = true,
+                         .has_implicit_checks = true,
+                         .image_has_points = true,
+                         .instance_root = "Device.Application",
                          .addresses_count = AddressCount::sizes,
                          .text_of_real = TextOfReal::of_codesys,
                          .most_aligned = 8,
@@ -98,12 +132,27 @@ const Dialect twincat = [] {
     made.addresses_count = AddressCount::bytes;
     made.beyond_type = BeyondType::fault;
     made.text_of_real = TextOfReal::rounded;
+    made.libraries = Libraries::twincat;
+    made.keeps_bits_of_register = true;
+    made.instance_root = iec.instance_root;
     return made;
 }();
 
 const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::matiec;
+    made.libraries = Libraries::matiec;
+    made.number_of_text = NumberOfText::of_matiec;
+    made.text_of_time = TimeForm::of_matiec;
+    made.text_of_long_time = iec.text_of_long_time;
+    made.no_time_is_ms = made.truth_may_go_on = made.texts_have_255 = false;
+    made.middle_begins_at_one = made.inserts_within_text = made.literals_wrap = false;
+    made.underlines_may_repeat = made.long_numbers_become_real = false;
+    made.bounds_have_32_bits = made.dates_take_times = made.blocks_begin_with_methods = false;
+    made.has_implicit_checks = made.image_has_points = false;
+    made.instance_root = iec.instance_root;
+    made.functions_are_in_c = made.functions_keep_widths = made.ands_end_early = true;
+    made.disabled_calls_give_zero = true;
     made.addresses_count = AddressCount::sizes_apart;
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
@@ -138,6 +187,25 @@ const Dialect scl = {.sign_precedes_power = false,
                      .crossed_limits = CrossedLimits::input,
                      .peripheries_are_image = true,
                      .dint_is_time = true,
+                     .libraries = Libraries::siemens,
+                     .number_of_text = NumberOfText::of_s7,
+                     .text_of_long_time = TimeForm::plain,
+                     .middle_begins_at_one = true,
+                     .negative_counts_clear = true,
+                     .outputs_may_be_assigned = true,
+                     .copies_in_outs = true,
+                     .has_no_pointers = true,
+                     .return_gives_eno = true,
+                     .inputs_take_any_integer = true,
+                     .compares_structures = true,
+                     .assigns_same_forms = true,
+                     .subranges_are_integers = true,
+                     .refuses_finer_times = true,
+                     .times_have_signs = true,
+                     .dates_count_days = true,
+                     .dates_begin_1990 = true,
+                     .truth_is_lowest_bit = true,
+                     .nan_is_not_unequal = true,
                      .text_of_real = TextOfReal::with_exponent,
                      .long_numbers_count_time = true,
                      .beyond_type = BeyondType::lowest_bits,

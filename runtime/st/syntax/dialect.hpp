@@ -29,6 +29,26 @@ enum class OtherChoice : std::uint8_t { fault, last, initial };
 /// LIMIT where MN is above MX: MX; MX if IN is above MN, else MN; IN.
 enum class CrossedLimits : std::uint8_t { upper, upper_or_lower, input };
 
+/// How a time is written: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
+/// `DT#2020-02-29-12:30:15`; of LTIME and its like `LTIME#1s500ms`, `LDATE#2020-02-29`; of these in
+/// CODESYS `LD#2020-02-29`, `LTIME#0ns`, and nine digits behind the point; in MatIEC six,
+/// `TOD#12:30:15.250000`.
+enum class TimeForm : std::uint8_t { plain, of_long, of_long_in_codesys, of_matiec };
+
+/// What STRING_TO_INT and its like read: digits, with `_` between groups of them, signs and points
+/// as an S7-1500 does, what MatIEC's library in C does.
+enum class NumberOfText : std::uint8_t { digits, grouped_digits, of_s7, of_matiec };
+
+/// Whose libraries have what a source names and does not declare.
+enum class Libraries : std::uint8_t {
+    plcopen,
+    automation_studio,
+    codesys,
+    matiec,
+    siemens,
+    twincat
+};
+
 /// Whose rules a sequential function chart goes by: flags, last scans, order of actions.
 enum class ChartRules : std::uint8_t { standard, codesys, matiec };
 
@@ -58,7 +78,7 @@ struct Dialect {
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
     bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
     Vendor vendor = Vendor::none;            ///< whose instances begin as find_beginning says
-    bool has_s7_instructions = false;  ///< VARIANT, S5 timers, ENO of functions, bytes of variables
+    bool has_s7_instructions = false;        ///< VARIANT, DTL, S5 timers, ENO of functions, bytes
     ChartRules charts = ChartRules::standard;
     OtherChoice other_choice = OtherChoice::fault;
     CrossedLimits crossed_limits = CrossedLimits::upper;
@@ -75,6 +95,62 @@ struct Dialect {
     bool texts_end_at_zero = false;          ///< a literal's `$00` ends it
     bool ignores_excess_values = false;      ///< of an array that has fewer elements
     bool texts_have_any_length = false;      ///< STRING[0], and a reference to it is one to any
+    Libraries libraries = Libraries::plcopen;
+    bool axes_are_types = false;        ///< `axis` of the catalogue is one, else in a TEST alone
+    bool variables_hide_types = false;  ///< `Trace : Trace;` beside any TYPE, else beside blocks
+    bool this_calls_methods = false;    ///< `f()` is a FUNCTION also where a METHOD has its name
+    bool methods_may_leave_out_inputs = false;  ///< at the end of a call by position
+    bool any_takes_literals = false;            ///< an ANY input is given INT#5
+    bool texts_grow_by_characters = false;      ///< `text[6] := 'x'` of one of five characters
+    bool takes_what_others_refuse = false;  ///< an instance in a function, UINT of a UINT and an
+                                            ///< INT, `[COUNT(5)]`
+    NumberOfText number_of_text = NumberOfText::digits;
+    TimeForm text_of_time = TimeForm::plain, text_of_long_time = TimeForm::of_long;
+    bool no_time_is_ms = false;          ///< TIME_TO_STRING(T#0s) is 'T#0ms', else 'T#0s'
+    bool truth_may_go_on = false;        ///< STRING_TO_BOOL('TRUE?') is TRUE, of '1' FALSE
+    bool texts_have_255 = false;         ///< what functions make, and LEN counts, else 254 and all
+    bool middle_begins_at_one = false;   ///< MID with P of 0 is empty
+    bool inserts_within_text = false;    ///< INSERT and REPLACE leave it as it is for a P behind it
+    bool negative_counts_clear = false;  ///< INSERT, DELETE and REPLACE are empty if L is -1
+    // CODESYS, and of it what TwinCAT has
+    bool literals_wrap = false;              ///< an INT of 40000, a BYTE of -1: a warning
+    bool underlines_may_repeat = false;      ///< `1__000`
+    bool long_numbers_become_real = false;   ///< LINT and ULINT do where a REAL is due
+    bool bounds_have_32_bits = false;        ///< UPPER_BOUND is no LINT where one is due
+    bool dates_take_times = false;           ///< DATE + TIME
+    bool blocks_begin_with_methods = false;  ///< SIZEOF of a block counts where these are
+    bool has_implicit_checks = false;        ///< CheckBounds, CheckDivInt
+    bool image_has_points = false;           ///< `%QW9.24.0` of a bus
+    bool keeps_bits_of_register = false;     ///< BeyondType::fault is beyond a register, not the
+                                             ///< type, whose lowest bits are kept
+    std::string_view instance_root = "Project";  ///< before the name of a program in a path
+    // MatIEC
+    bool functions_are_in_c = false;     ///< conversions and texts by its library: TIMEs count s
+    bool functions_keep_widths = false;  ///< an INT that was reckoned is cut before it is given
+    bool ands_end_early = false;         ///< AND and OR of BOOLs look at the second where it counts
+    bool disabled_calls_give_zero = false;  ///< `y := f(EN := FALSE);`, else y stays
+    // B&R
+    bool actions_are_of_callers = false;        ///< an ACTION of a file belongs to who runs it
+    bool times_take_numbers = false;            ///< `timer.PT := 500`, of ms
+    bool words_of_dates_count_seconds = false;  ///< DATE_TO_UINT, else days
+    bool in_outs_take_any_text = false;         ///< VAR_IN_OUT of a STRING[20] a STRING[80]
+    bool references_take_numbers = false;  ///< that are addresses, be they of its type; an array of
+                                           ///< another length
+    // Siemens
+    bool outputs_may_be_assigned = false;  ///< `f(q := x)` takes the output, as STEP 7 V5 wrote it
+    bool copies_in_outs = false;           ///< what is elementary, at the end of the call
+    bool has_no_pointers = false;          ///< to a variable that a call was given
+    bool return_gives_eno = false;         ///< `RETURN n > 0;`
+    bool inputs_take_any_integer = false;  ///< also where one of several methods is chosen by types
+    bool compares_structures = false;      ///< and arrays: `a = b`
+    bool assigns_same_forms = false;       ///< structures without a name, arrays of other bounds
+    bool subranges_are_integers = false;   ///< a BYTE has none
+    bool refuses_finer_times = false;      ///< T#1us, else it is T#0s
+    bool times_have_signs = false;         ///< those of whole ms; else T#0s - T#1ms is T#49d...
+    bool dates_count_days = false;         ///< of any whole number
+    bool dates_begin_1990 = false;         ///< a DATE and a DT, else with 1970
+    bool truth_is_lowest_bit = false;      ///< INT_TO_BOOL(2) is FALSE
+    bool nan_is_not_unequal = false;       ///< `x <> y` is FALSE, too, where one is no number
     AddressCount addresses_count = AddressCount::bytes;
     TextOfReal text_of_real = TextOfReal::shortest;
     std::uint8_t most_aligned = 1;         ///< bytes that a member of a structure begins at
@@ -114,10 +190,9 @@ extern const Dialect iec, simatic_ax, automation_studio, codesys, codesys_23, wo
 /// By the ending of a file's name: `.st` is the standard's, `.typ`, `.var`, `.fun` and what a
 /// `.prg` puts together are B&R's, `.EXP` CoDeSys 2.3's, `.xml` CODESYS', `.TcPOU` and its like
 /// TwinCAT's, others SCL. Any other text, `.txt`, `.iecst`, is as one in `.st`, behind whose name
-/// it may say otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's, with
-/// `{attribute
-/// '...'}` CODESYS', with a line `NAMESPACE x` or `USING x;` SIMATIC AX', with one that begins with
-/// DATA_BLOCK or ORGANIZATION_BLOCK SCL; one in
+/// it may say otherwise, `.scl.txt`. One in `.st` with `RESOURCE x ON PLC` is MatIEC's; with an
+/// attribute, `{attribute 'x'}`, it is CODESYS'; with a line `NAMESPACE x` or `USING x;` it is
+/// SIMATIC AX'; with a line that begins with DATA_BLOCK or ORGANIZATION_BLOCK it is SCL. One in
 /// `.EXP` or `.xml` that has a bit above 7, `%IX0.12`, is of a word-addressed device.
 const Dialect& dialect_of(std::string_view path, std::string_view text = {});
 

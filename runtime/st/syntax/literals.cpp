@@ -17,13 +17,6 @@ namespace {
 
 constexpr Wide beyond = Wide{1} << 64;
 
-int digit_of(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return 99;
-}
-
 /// Underscores stand between digits, one at a time.
 bool separates_well(std::string_view text) {
     return !text.empty() && text.front() != '_' && text.back() != '_' &&

@@ -78,7 +78,7 @@ void parse_pou_modifiers(Parsing& p, Pou& pou) {
 }
 
 /// Pou_Bases : ( 'EXTENDS' Name_List ) ? ( 'IMPLEMENTS' Name_List ) ?
-/// Of a FUNCTION_BLOCK, a CLASS and an INTERFACE, which alone has several behind EXTENDS.
+/// A FUNCTION_BLOCK, a CLASS and an INTERFACE have it; the last alone has several behind EXTENDS.
 void parse_bases(Parsing& p, Pou& pou) {
     const Token first = p.here();
     if (p.accept(Word::extends_)) parse_name_list(p, pou.bases);

@@ -83,7 +83,7 @@ bool skip_path(Parsing& p) {
     return true;
 }
 
-/// Of a file's path or a line's number, which nobody need give.
+/// It stands for a file's path or a line's number, which nobody need give.
 Expression* value_of_caller(Parsing& p, const TypeText& type) {
     const bool is_text = type.kind == TypeText::Kind::text || same_name(type.name.text, "string");
     Token token = type.name;

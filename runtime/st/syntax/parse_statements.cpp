@@ -57,7 +57,7 @@ void parse_latch(Parsing& p, Expression* target, Block& to) {
 }
 
 /// Access_Stmt : Variable_Access 'ACCESS' Expression ';'
-/// Of B&R: `r ACCESS ADR(x);` is `r REF= ADR(x);`.
+/// B&R has it: `r ACCESS ADR(x);` is `r REF= ADR(x);`.
 void parse_access_statement(Parsing& p, Expression* target, Block& to) {
     Statement* statement = p.make(Statement::Kind::assign, p.take());
     statement->op = Word::reference_assign;
@@ -266,8 +266,8 @@ bool begins_value(const Parsing& p) {
 void parse_jump(Parsing& p, Statement::Kind kind, Block& to) {
     const Token word = p.take();
     Statement* jump = p.make(kind, word);
-    const bool is_siemens = p.source->dialect.vendor == Vendor::siemens;
-    if (kind == Statement::Kind::return_ && is_siemens && !p.is(Word::semicolon)) {
+    const bool gives_eno = p.source->dialect.return_gives_eno;
+    if (kind == Statement::Kind::return_ && gives_eno && !p.is(Word::semicolon)) {
         Statement* told = p.make(Statement::Kind::assign, word);
         told->target = p.make(Expression::Kind::name, word);
         told->target->token.text = "ENO";

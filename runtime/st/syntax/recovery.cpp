@@ -48,7 +48,7 @@ bool is_left(const Parsing& p) {
     return at_end_of_block(p) || at_label_of_case(p);
 }
 
-/// Of a call: what follows its ')' is no operator and no ';'.
+/// What follows the ')' of a call is no operator and no ';'.
 bool is_doomed_call(const Cursor& p) {
     int open = 0;
     for (std::size_t i = 1; p.at + i < p.tokens.size(); ++i) {

@@ -22,7 +22,7 @@ struct Piece {
     const Token* token = nullptr;  ///< null: a comment or a pragma
 
     bool is(Word word) const { return token && token->word == word; }
-    /// Of a comment or a pragma without the blanks behind it.
+    /// A comment or a pragma comes without the blanks behind it.
     std::string_view text() const {
         std::string_view text = place.text();
         if (!token) text = text.substr(0, text.find_last_not_of(" \r\t") + 1);
@@ -307,7 +307,7 @@ std::optional<std::string> Style::write(Diagnostics& wrong) {
     return out.empty() ? out : out + end_;
 }
 
-/// Of what stands before a piece and is none.
+/// Tells what stands before a piece and is none.
 void Style::refuse(std::size_t i, Diagnostics& wrong) const {
     const std::uint32_t end = i == 0 ? 0 : pieces_[i - 1].place.end;
     const auto begin = static_cast<std::uint32_t>(text_.find_first_not_of(" \t\r\n\f", end));

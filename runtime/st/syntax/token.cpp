@@ -24,7 +24,7 @@ constexpr std::string_view other_names[] = {
     "the end of the file", "a name", "a type", "a number", "a number", "a time", "a text",
     "a direct address"};
 
-/// Of the signs, likewise: from `assign` on.
+/// The signs, in the same order, from `assign` on.
 constexpr std::string_view sign_texts[] = {
     ":=", "+=", "-=", "*=", "/=", "S=", "R=", "=>", "REF=", "?=", "**", "*", "/",  "+", "-", "<",
     "<=", ">",  ">=", "=",  "<>", "&",  "^",  "(",  ")",    "[",  "]",  ".", "..", ",", ";", ":"};

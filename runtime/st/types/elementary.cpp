@@ -80,7 +80,7 @@ Type null_reference() {
     return type;
 }
 
-/// Of references to references, as far as anybody would write them.
+/// Follows references to references, as far as anybody would write them.
 bool refer_to_the_same(const Type* a, const Type* b) {
     for (int hops = 0; hops < 64; ++hops) {
         if (a == b) return true;

@@ -18,16 +18,12 @@ enum Scale : std::uint8_t { in_ns, in_ms, in_seconds, in_days };
 constexpr std::int64_t scales[] = {1, 1'000'000, 1'000'000'000, 86'400'000'000'000};
 constexpr std::int64_t day_of_1990 = 7305;  ///< counted from 1970-01-01
 
-std::uint64_t aligned(std::uint64_t bits, std::uint64_t to) {
-    return (bits + to - 1) / to * to;
-}
-
 /// Where the next value of the type may begin on an S7, which needs so many bits. Booleans share
 /// bytes, and what is longer than a byte begins at an even one.
 std::uint64_t begin_on_s7(const Type& type, std::uint64_t at, const Dialect& dialect) {
     if (type.kind == Kind::boolean) return at;
     const bool is_byte = type.is_scalar() && packed_bits(type, dialect) == 8;
-    return aligned(at, is_byte ? 8 : 16);
+    return rounded_up(at, is_byte ? 8 : 16);
 }
 
 std::uint64_t begin_of(const Type& member, const Type& structure, std::uint64_t at,
@@ -166,7 +162,7 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
     }
     if (type.kind == Kind::array) {
         const std::uint64_t bits = type.element ? packed_stride(type, dialect) * type.count() : 0;
-        return dialect.packs_as_s7 ? aligned(bits, 16) : bits;
+        return dialect.packs_as_s7 ? rounded_up(bits, 16) : bits;
     }
     if (type.kind == Kind::text && type.is_wide) return 16 * (std::uint64_t{type.length} + 1);
     if (type.kind == Kind::text) return 8 * (type.length + (dialect.packs_as_s7 ? 2 : 1));
@@ -179,12 +175,12 @@ std::uint64_t packed_bits(const Type& type, const Dialect& dialect) {
         end = is_union ? std::max(end, place_in_union(*member) + bits)
                        : begin_of(*member->type, type, end, dialect) + bits;
     }
-    return aligned(end, dialect.packs_as_s7 ? 16 : 8 * alignment_of(type));
+    return rounded_up(end, dialect.packs_as_s7 ? 16 : 8 * alignment_of(type));
 }
 
 std::uint64_t packed_stride(const Type& array, const Dialect& dialect) {
     const std::uint64_t bits = packed_bits(*array.element, dialect);
-    return dialect.packs_as_s7 ? begin_on_s7(*array.element, bits, dialect) : aligned(bits, 8);
+    return dialect.packs_as_s7 ? begin_on_s7(*array.element, bits, dialect) : rounded_up(bits, 8);
 }
 
 std::uint64_t packed_offset(const Type& structure, const Variable& wanted, const Dialect& dialect) {

@@ -19,10 +19,6 @@ bool lacks_base(const Type& type) {
 
 namespace {
 
-std::uint64_t rounded_up(std::uint64_t bytes, std::uint64_t to) {
-    return (bytes + to - 1) / to * to;
-}
-
 std::uint64_t whole_bytes(std::uint64_t bits) {
     return (bits + 7) / 8;
 }
@@ -33,7 +29,7 @@ std::uint64_t bytes_of_block(const Type& type) {
     Routine& block = *type.routine;
     if (block.is_measured) return 0;
     block.is_measured = true;
-    const bool has_methods = block.pou->name.place.dialect().vendor == Vendor::codesys;
+    const bool has_methods = block.pou->name.place.dialect().blocks_begin_with_methods;
     std::uint64_t bits = 8 * (block.base ? bytes_of(*block.base->type) : has_methods ? 8U : 0U);
     for (const Variable& variable : block.variables)
         if (variable.type && variable.space == Space::frame)
@@ -135,6 +131,25 @@ std::vector<Variable*> all_variables(const Routine& block) {
     for (const Variable& variable : block.variables)
         all.push_back(const_cast<Variable*>(&variable));
     return all;
+}
+
+Wide count_parts(const Type& type) {
+    if (type.kind == Type::Kind::array)
+        return (Wide{type.upper} - type.lower + 1) * count_parts(*type.element);
+    if (type.kind != Type::Kind::structure) return 1;
+    Wide count = 0;
+    for (const Variable* member : type.members)
+        if (member->type) count += count_parts(*member->type);
+    return count;
+}
+
+bool has_handle(const Type& type) {
+    const auto has = [](const Variable* part) { return part->type && has_handle(*part->type); };
+    if (type.kind == Type::Kind::array) return has_handle(*type.element);
+    if (type.kind == Type::Kind::structure) return std::ranges::any_of(type.members, has);
+    if (type.kind == Type::Kind::block)
+        return std::ranges::any_of(all_variables(*type.routine), has);
+    return type.kind == Type::Kind::handle;
 }
 
 bool declares(const Routine& block, std::string_view name) {

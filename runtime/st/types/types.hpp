@@ -156,6 +156,11 @@ std::uint64_t bytes_of(const Type& type);
 /// Bytes of which its place there is a multiple.
 std::uint64_t alignment_of(const Type& type);
 
+/// The next multiple.
+constexpr std::uint64_t rounded_up(std::uint64_t number, std::uint64_t to) {
+    return (number + to - 1) / to * to;
+}
+
 /// Where a member of a UNION begins [bits]: at 0, but of a STRUCT OVERLAP as AT says.
 std::uint64_t place_in_union(const Variable& member);
 
@@ -307,6 +312,10 @@ struct Routine {
 
 /// A block's variables, those of its bases first.
 std::vector<Variable*> all_variables(const Routine& block);
+/// How many numbers and texts there are in structures and arrays; else 1.
+Wide count_parts(const Type& type);
+/// Whether there is a reference to a block of the program in it, such as AXIS_REF.
+bool has_handle(const Type& type);
 
 /// Whether it, or one of its bases, has a variable of that name.
 bool declares(const Routine& block, std::string_view name);

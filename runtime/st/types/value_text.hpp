@@ -16,12 +16,6 @@ std::string value_text(const Type& type, std::uint64_t slot);
 /// `T#1d2h3m4s5ms6us7ns`
 std::string time_literal(std::int64_t nanoseconds);
 
-/// How a time is written: `T#1s500ms`, `D#2020-02-29`, `TOD#12:30:15.250`,
-/// `DT#2020-02-29-12:30:15`; of LTIME and its like `LTIME#1s500ms`, `LDATE#2020-02-29`; of these in
-/// CODESYS `LD#2020-02-29`, `LTIME#0ns`, and nine digits behind the point; in MatIEC six,
-/// `TOD#12:30:15.250000`.
-enum class TimeForm : std::uint8_t { plain, of_long, of_long_in_codesys, of_matiec };
-
 /// A time that becomes a text. An instruction has it as a number.
 struct TimeText {
     Type::Kind kind = Type::Kind::time;

@@ -75,8 +75,8 @@ constexpr AddedInput added_inputs[] = {{"StartMode"},       {"StopMode"},
                                        {"Override", 100},   {"SyncProfileReference", 1},
                                        {"SyncDirection", 3}};
 
-/// Of MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction, and of MC_HOME's Mode: 0 and 1 are direct
-/// homing, 6, 7, 11 and 12 adjust an encoder or the set-point alike.
+/// What MC_MOVEABSOLUTE's and MC_MOVEVELOCITY's Direction and MC_HOME's Mode mean: 0 and 1 are
+/// direct homing, 6, 7, 11 and 12 adjust an encoder or the set-point alike.
 constexpr std::int64_t directions[] = {0, 1, 2, 0},
                        homing_modes[] = {0, 3, 4, 4, 4, 4, 3, 0, 4, 4, 4, 0, 3, 4};
 

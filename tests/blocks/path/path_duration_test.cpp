@@ -46,7 +46,7 @@ struct Planned {
     Path path;
 };
 
-/// Of 6 to 40 mm, by a radius of 4 to 25 mm.
+/// It is 6 to 40 mm long, by a radius of 4 to 25 mm.
 PathCurve random_arc(Choice& choice, const PathVector& from) {
     for (;;) {
         const double radius = choice.between(4, 25);

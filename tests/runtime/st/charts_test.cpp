@@ -183,7 +183,7 @@ class Evaluator {
     bool is_active(std::size_t step, int row) const { return active_[index(row)][step]; }
     /// In the scan before; nothing was before the first one.
     bool was_active(std::size_t step, int row) const { return row > 1 && is_active(step, row - 1); }
-    /// Of a step that is active [ms].
+    /// How long a step has been active [ms].
     int time(std::size_t step, int row) const { return row - 1 - entered_[index(row)][step]; }
 
     template <class Condition>

@@ -61,7 +61,7 @@ std::string compiled(std::vector<std::shared_ptr<const SourceFile>> sources) {
 TEST_CASE("libraries declare for others what their lines say", "[st][libraries]") {
     for (const LibraryFile& library : standard_blocks().libraries()) {
         INFO(library.path);
-        auto names = st::LibraryNames::declared_in(library);
+        auto names = st::declared_in(library);
         std::ranges::sort(names);
         const auto parsed = parsed_names(library);
         CHECK(std::ranges::equal(names, parsed));
@@ -100,7 +100,7 @@ TEST_CASE("each library compiles, and has no kind but of its variables and numbe
 
 TEST_CASE("a name of a library brings along all that its file needs", "[st][libraries]") {
     for (const LibraryFile& library : standard_blocks().libraries()) {
-        const auto names = st::LibraryNames::declared_in(library);  // each takes the same files
+        const auto names = st::declared_in(library);  // each takes the same files
         if (names.empty()) continue;
         const std::string name = std::string(library.library) + "." + std::string(names.front());
         INFO(library.path);

@@ -116,7 +116,7 @@ std::int64_t time_taken(const st::Library& library, std::int64_t n) {
         load(lineshaft::Type::integer, instances.memory(0) + *kind.time_taken));
 }
 
-/// Of a FOR over n with these statements in it.
+/// A block with a FOR over n that has these statements in it.
 std::string loop(const std::string& statements) {
     return "FUNCTION_BLOCK Job\nVAR_INPUT n : DINT; END_VAR\n"
            "VAR i, k : DINT; x, y : LREAL; f : BOOL; END_VAR\nFOR i := 1 TO n DO\n" +
@@ -168,7 +168,8 @@ TEST_CASE("Structured Text: native code leaves the memory that the machine leave
     CHECK(compare(job("b := Inner(a, 2) + Inner(a, 3);"), {}).empty());
     CHECK(compare(job("s := DINT_TO_STRING(n * 1000);"), {}).empty());
     CHECK(compare(job("b := Inner(a, b);"), {}) == Faults{"2 division_by_zero"});
-    // Of two NaNs with other bits, of SQRT and of ATAN2, the first one is the sum and the product.
+    // Where two NaNs have other bits, of SQRT and of ATAN2, the first one is the sum and the
+    // product.
     CHECK(compare("PROGRAM Main VAR a, b, s, t, p, q, r : LREAL; f, g, h : REAL; END_VAR\n"
                   "a := SQRT(-1.0 - a); b := ATAN2(a, a); s := a + b; t := b + a; p := a * b; "
                   "q := b * (a * 2.0); r := a + b * 2.0; f := TO_REAL(a) * TO_REAL(b); "

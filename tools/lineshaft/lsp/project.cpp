@@ -8,6 +8,7 @@
 #include "runtime/projects/instruction_lists.hpp"
 #include "runtime/source/encoding.hpp"
 #include "runtime/source/letters.hpp"
+#include "runtime/source/paths.hpp"
 #include "runtime/st/library/library.hpp"
 #include "runtime/study/study_reader.hpp"
 #include "tools/lineshaft/check_project.hpp"
@@ -20,26 +21,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_below(const fs::path& path, const fs::path& folder) {
-    const auto relative = path.lexically_relative(folder);
-    return !relative.empty() && *relative.begin() != "..";
-}
-
 std::string normal(const std::string& path) {
     return fs::path(path).lexically_normal().string();
 }
 
-bool has_ending(const std::string& path, std::initializer_list<std::string_view> endings) {
-    return std::ranges::find(endings, lower(fs::path(path).extension().string())) != endings.end();
-}
-
 /// A POU, a type or a list of globals of TwinCAT.
 bool is_object(const std::string& path) {
-    return has_ending(path, {".tcpou", ".tcdut", ".tcgvl"});
+    const std::string ending = extension_of(path);
+    return ending == ".tcpou" || ending == ".tcdut" || ending == ".tcgvl";
 }
 
 bool is_project_file(const std::string& path) {
-    return has_ending(path, {".plcproj"});
+    return extension_of(path) == ".plcproj";
 }
 
 /// Editors have other people's YAML open, too.
@@ -63,7 +56,7 @@ bool is_code(const std::string& path) {
 }
 
 bool Project::lies_in_folders(const std::string& path) const {
-    return std::ranges::any_of(folders_, [&](const auto& f) { return is_below(path, f); });
+    return std::ranges::any_of(folders_, [&](const auto& f) { return lies_below(path, f); });
 }
 
 void Project::forget() {
@@ -129,7 +122,7 @@ std::string Project::project_of(const std::string& object) const {
     for (const std::string& project : projects_) {
         const std::string folder = fs::path(project).parent_path().string();
         if (folder.size() >= fs::path(nearest).parent_path().string().size() &&
-            is_below(object, folder))
+            lies_below(object, folder))
             nearest = project;
     }
     return nearest.empty() ? object : nearest;
