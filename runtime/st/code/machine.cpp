@@ -186,7 +186,7 @@ Fault run_whole(Frames& frames) {
 
 [[gnu::always_inline]] inline Fault run_native(const ScanStart& start, Frames& frames,
                                                std::byte* base) {
-    const NativeEntry entry = start.code->native->scan_of(start.number, *start.routine);
+    const NativeEntry entry = start.code->native->scan_of(start.number);
     const Fault fault = entry(base, frames, start.fuel);
     if (fault == Fault::none) [[likely]]
         return fault;
@@ -238,7 +238,7 @@ ScanStart::ScanStart(const Code& of, const CodeRoutine& runs, std::int64_t passe
       calls(8 * of.calls_slot()),
       pile(8 * runs.pile.first) {}
 
-bool execute(const ScanStart& start, std::byte* instance, const Scan& now, const Context& context) {
+bool execute(std::byte* instance, const ScanStart& start, const Scan& now, const Context& context) {
     Frames frames = frames_at(start, instance, now, context);
     const Code& code = *start.code;
     const Fault fault = code.native && !code.probe ? run_native(start, frames, instance)

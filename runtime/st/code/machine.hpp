@@ -57,7 +57,7 @@ struct ScanStart {
 /// a fault. Allocates nothing, throws nothing, and ends after at most `fuel` passes of loops and
 /// calls. With Code::times the header has how many of each class were executed and what they took.
 /// Where Code::probe wants to step the scan, it is interpreted.
-bool execute(const ScanStart& start, std::byte* instance, const Scan& now, const Context& context);
+bool execute(std::byte* instance, const ScanStart& start, const Scan& now, const Context& context);
 
 /// The same on the frame at an address: 0, or that of an instance that is a part of another one,
 /// whose copy has room for the calls, and gets the header.

@@ -41,7 +41,7 @@ Evaluated evaluate(Expression& expression) {
     std::vector<std::uint64_t>& image = made.images.at(&block);
     Scan scan;
     auto* const instance = reinterpret_cast<std::byte*>(image.data());
-    if (execute({made.code, made.code.routines.front(), 1}, instance, scan, {}))
+    if (execute(instance, {made.code, made.code.routines.front(), 1}, scan, {}))
         return {fault_of(made.code, instance).fault};
     return {Fault::none, constant_of(*expression.type, &image[result.slot])};
 }

@@ -63,7 +63,7 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
         if (kind.run_test) return run_test(kind, instance, context);
         if (is_refused(kind, instance)) return true;
     }
-    return execute(kind.start, instance, now, context);
+    return execute(instance, kind.start, now, context);
 }
 
 [[gnu::noinline]] bool scan_all(const KindContext& kind, std::byte* first, std::size_t count,
@@ -77,7 +77,7 @@ bool scan_one(const KindContext& kind, std::byte* instance, const Scan& now,
 bool scan_blocks(std::byte* first, std::size_t count, const Scan& now, const Context& context) {
     const auto& kind = *static_cast<const KindContext*>(context.kind);
     if (count == 1 && kind.is_plain) [[likely]]
-        return execute(kind.start, first, now, context);
+        return execute(first, kind.start, now, context);
     return scan_all(kind, first, count, now, context);
 }
 

@@ -182,8 +182,9 @@ class Compiling {
     }
 
     void give(Native& native, const NativeEntry* entries) {
-        native.compiled.store(entries, std::memory_order_release);
-        given_ += entries != nullptr;
+        if (!entries) return;
+        native.scans.store(entries, std::memory_order_release);
+        ++given_;
     }
 
     void give_up(const std::string& why) {

@@ -71,10 +71,13 @@ constexpr std::uint64_t word(const std::byte*, const Known& constant) {
 #define GO(label) goto label
 #define CHOOSE(slot, number, ways) \
     switch (U(slot)) { ways }
-#define AGAIN(label)                  \
-    {                                 \
-        if (--fuel < 0) FAIL(no_end); \
-        goto label;                   \
+// What is left is nothing that gcc knows of: else it keeps what was left before each pass, too.
+#define AGAIN(label)                \
+    {                               \
+        --fuel;                     \
+        asm("" : "+r"(fuel));       \
+        if (fuel < 0) FAIL(no_end); \
+        goto label;                 \
     }
 #define FAIL(why)                                                \
     return {                                                     \

@@ -273,6 +273,9 @@ std::shared_ptr<const Native> native_code(const Code& code) {
         refused = true;
         return {};
     }
+    for (const CodeRoutine& routine : code.routines)
+        native->copied.push_back(native->entry(routine.entry));
+    native->scans = native->copied.data();
     compile_code(code, native);
     return native;
 }

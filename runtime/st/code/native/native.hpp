@@ -24,8 +24,9 @@ struct Native {
     const std::byte* first = nullptr;   ///< of the memory that has it
     std::size_t size = 0;               ///< of that memory [bytes]
     std::vector<std::uint32_t> places;  ///< of each instruction, from `first` on
-    /// What a compiler made of each routine, as soon as it did: `compile`.
-    std::atomic<const NativeEntry*> compiled = nullptr;
+    std::vector<NativeEntry> copied;    ///< the scans of the routines
+    /// The same by what a compiler made of each routine, as soon as it did: `compile`.
+    std::atomic<const NativeEntry*> scans = nullptr;
 
     Native() = default;
     ~Native();
@@ -36,9 +37,8 @@ struct Native {
         return reinterpret_cast<NativeEntry>(const_cast<std::byte*>(first) +
                                              places.data()[instruction]);
     }
-    NativeEntry scan_of(std::uint32_t number, const CodeRoutine& routine) const {
-        const NativeEntry* const made = compiled.load(std::memory_order_acquire);
-        return made ? made[number] : entry(routine.entry);
+    NativeEntry scan_of(std::uint32_t routine) const {
+        return scans.load(std::memory_order_acquire)[routine];
     }
 };
 
