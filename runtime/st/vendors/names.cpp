@@ -42,12 +42,11 @@ constexpr Renamed types[] = {
     {"dword", " conn_r_id event_any event_att event_hwint aom_ident "},
 };
 
-constexpr Renamed parts[] = {{"r", " reset "},
-                             {"ld", " load "},
-                             {"s1", " set1 "},
-                             {"s", " set "},
-                             {"r1", " reset1 "},
-                             {"valid", " busy "},
+/// Of flip-flops and counters: CODESYS' names, which others have besides.
+constexpr Renamed pins[] = {
+    {"r", " reset "}, {"ld", " load "}, {"s1", " set1 "}, {"s", " set "}, {"r1", " reset1 "}};
+
+constexpr Renamed parts[] = {{"valid", " busy "},
                              {"homingmode", " mode "},
                              {"q", " qu qd "},
                              {"enablepositive", " enable_positive "},
@@ -143,7 +142,15 @@ std::string_view standard_type_name(std::string_view name) {
 }
 
 std::string_view standard_part_name(std::string_view name) {
-    return standard_of(parts, name);
+    const std::string_view pin = standard_of(pins, name);
+    return pin.empty() ? standard_of(parts, name) : pin;
+}
+
+std::string shown_part_name(std::string_view name, Vendor vendor) {
+    const bool is_plcopens = std::ranges::any_of(name, [](char c) { return lower(c) != c; });
+    if (vendor != Vendor::codesys || is_plcopens) return std::string(name);
+    const auto* pin = std::ranges::find(pins, name, &Renamed::standard);
+    return upper(pin == std::end(pins) ? name : pin->theirs.substr(1, pin->theirs.size() - 2));
 }
 
 std::string_view standard_argument_name(std::string_view name) {

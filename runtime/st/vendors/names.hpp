@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "runtime/model/catalog.hpp"
@@ -20,6 +21,10 @@ std::string_view standard_type_name(std::string_view name);
 /// What a kind of block calls a part that vendors call otherwise, where it has that: RESET is R.
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
+
+/// What a vendor calls a part of the standard's blocks: CODESYS' R is RESET. Any other name is its
+/// own.
+std::string shown_part_name(std::string_view name, Vendor vendor);
 
 /// What CODESYS' and SIMATIC AX' functions of texts call an argument, as the standard does: STR1
 /// and string1 are IN1, SIZE is L.
@@ -89,6 +94,8 @@ const Beginning* find_beginning(std::string_view kind, Vendor vendor);
 std::string_view instead_of_type(std::string_view name, Vendor vendor);
 std::string_view instead_of_function(std::string_view name);
 std::string_view instead_of_input(std::string_view name);
+/// The same of an address, `%KW5`.
+std::string_view instead_of_address(std::string_view address);
 /// The same of what nobody declares, which another vendor's controller has: `GetTime`, and `X0`,
 /// where no other name is like it.
 std::string_view instead_of_undeclared(std::string_view name, bool may_be_device);
