@@ -30,9 +30,9 @@ std::vector<std::string> names_of(const std::vector<Variable*>& variables) {
 }
 
 std::vector<std::string> shown_names(const std::vector<Variable*>& parts, Place place) {
+    if (!place.dialect().pins_have_long_names) return names_of(parts);
     std::vector<std::string> names;
-    for (const Variable* part : parts)
-        names.push_back(shown_part_name(part->text, place.dialect().vendor));
+    for (const Variable* part : parts) names.push_back(long_part_name(part->text));
     return names;
 }
 

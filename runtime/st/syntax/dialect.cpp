@@ -37,6 +37,7 @@ const Dialect automation_studio = [] {
     made.most_aligned = 4;
     made.text_length = 80;
     made.vendor = Vendor::automation_studio;
+    made.seconds_move_moments = true;
     made.ampersands_may_be_two = false;
     made.open_texts_end_with_lines = made.texts_end_at_zero = true;
     made.beyond_type = BeyondType::left_in_register;
@@ -54,6 +55,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .is_loose = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
+                         .pins_have_long_names = true,
                          .vendor = Vendor::codesys,
                          .charts = ChartRules::codesys,
                          .other_choice = OtherChoice::last,
@@ -104,6 +106,7 @@ const Dialect twincat = [] {
 const Dialect matiec = [] {
     Dialect made = codesys;
     made.vendor = Vendor::matiec;
+    made.pins_have_long_names = false;
     made.addresses_count = AddressCount::sizes_apart;
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
@@ -132,6 +135,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .numbers_stand_for_names = true,
                      .texts_of_integers_have_signs = true,
                      .packs_as_s7 = true,
+                     .begin_is_no_name = true,
                      .vendor = Vendor::siemens,
                      .has_s7_instructions = true,
                      .other_choice = OtherChoice::initial,

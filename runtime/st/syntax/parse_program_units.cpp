@@ -61,7 +61,7 @@ bool at_variable_begin(const Parsing& p) {
     using enum Word;
     static constexpr Word behind[] = {assign, plus_assign,  minus_assign, set_assign, reset_assign,
                                       open,   open_bracket, dot,          caret};
-    return p.source->dialect.vendor != Vendor::siemens &&
+    return !p.source->dialect.begin_is_no_name &&
            std::ranges::find(behind, p.next().word) != std::end(behind);
 }
 

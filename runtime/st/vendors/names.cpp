@@ -42,7 +42,7 @@ constexpr Renamed types[] = {
     {"dword", " conn_r_id event_any event_att event_hwint aom_ident "},
 };
 
-/// Of flip-flops and counters: CODESYS' names, which others have besides.
+/// CODESYS' names of pins of flip-flops and counters, which others have besides.
 constexpr Renamed pins[] = {
     {"r", " reset "}, {"ld", " load "}, {"s1", " set1 "}, {"s", " set "}, {"r1", " reset1 "}};
 
@@ -146,9 +146,9 @@ std::string_view standard_part_name(std::string_view name) {
     return pin.empty() ? standard_of(parts, name) : pin;
 }
 
-std::string shown_part_name(std::string_view name, Vendor vendor) {
+std::string long_part_name(std::string_view name) {
     const bool is_plcopens = std::ranges::any_of(name, [](char c) { return lower(c) != c; });
-    if (vendor != Vendor::codesys || is_plcopens) return std::string(name);
+    if (is_plcopens) return std::string(name);
     const auto* pin = std::ranges::find(pins, name, &Renamed::standard);
     return upper(pin == std::end(pins) ? name : pin->theirs.substr(1, pin->theirs.size() - 2));
 }
@@ -156,6 +156,10 @@ std::string shown_part_name(std::string_view name, Vendor vendor) {
 std::string_view standard_argument_name(std::string_view name) {
     const std::string_view standard = standard_of(arguments, name);
     return standard.empty() ? name : standard;
+}
+
+bool counts_for_axis(std::string_view member) {
+    return has_word(" controldword override ", member);
 }
 
 bool is_vendor_library(std::string_view name) {

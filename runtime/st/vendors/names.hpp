@@ -22,9 +22,9 @@ std::string_view standard_type_name(std::string_view name);
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
 
-/// What a vendor calls a part of the standard's blocks: CODESYS' R is RESET. Any other name is its
-/// own.
-std::string shown_part_name(std::string_view name, Vendor vendor);
+/// What CODESYS calls a part of the standard's blocks: r is RESET, q is Q. One of PLCopen's blocks
+/// is as it is.
+std::string long_part_name(std::string_view name);
 
 /// What CODESYS' and SIMATIC AX' functions of texts call an argument, as the standard does: STR1
 /// and string1 are IN1, SIZE is L.
@@ -48,6 +48,9 @@ constexpr std::string_view library_called(std::string_view name) {
 
 /// Timers and counters of controllers themselves, filters, a clock; its names are seen as those.
 inline constexpr std::string_view siemens_step7 = "Siemens.Step7";
+
+/// What is written to it of TwinCAT's interface of an axis has an effect here.
+bool counts_for_axis(std::string_view member);
 
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
