@@ -351,6 +351,19 @@ def check_paths(lineshaft):
     rows = [row.split(",")[:4] for row in run(lineshaft, "--path", *limits, text=bad)[1].splitlines()[1:]]
     if rows != [["1", "0", "bad_line", "3"], ["2", "1", "", "2"], ["3", "0", "bad_line", "1"]]:
         yield f"--path, paths with bad lines: {rows}"
+    alone = "position1,position4\n0,0\n0,90\n"
+    for more, answer in ((["--limits", "1,1,1"], ["0", "no_limits_of_axes"]), (["--limits", "1,1,1", "1,1,1"], ["1", ""])):
+        rows = run(lineshaft, "--path", *more, text=alone)[1].splitlines()
+        if rows[1].split(",")[1:3] != answer:
+            yield f"--path {more}, a rotary axis alone: {rows[1]}"
+    code, out, err = run(lineshaft, "--path", *limits, "--every", "1", text="position1,position2\n1,2\n1,2\n")
+    if code != 0 or out.splitlines()[1:] != ["1,0,0,0,0,0,1,2,0,0,0,0"]:
+        yield f"--path --every, no length: exit code {code}, {out!r}, {err!r}"
+    for option, value, why in (("--every", "0", "above 0"), ("--every", "nan", "above 0"), ("--deviation", "nan", "that is 0 or above"),
+                               ("--deviation", "-1", "that is 0 or above")):
+        code, out, err = run(lineshaft, "--path", *limits, option, value, text=line)
+        if code != 2 or f"{option}: '{value}' is not a number {why}" not in err:
+            yield f"{option} {value}: exit code {code}, said {err!r}"
     for arguments in (["--path"], limits, ["--path", "--limits", "1,2"], ["--path", "--limits", "1,0,1"]):
         if run(lineshaft, *arguments, text=line)[0] != 2:
             yield f"{arguments} is accepted"

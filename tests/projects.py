@@ -1945,6 +1945,22 @@ def check_axes_of_groups():
     run("run", "grouped.yaml", "--quiet")
 
 
+def check_axes_of_siemens():
+    """Axes of Siemens need homing as well as power, until who knows the encoder takes that out."""
+    write("homed.scl", "FUNCTION_BLOCK \"P\"\nVAR w : MC_POWER; a : MC_MOVEABSOLUTE; END_VAR\nBEGIN\n#w(Axis := \"Feed\", Enable := TRUE);\n"
+          "#a(Axis := \"Feed\", Execute := #w.Status, Position := 5.0, Velocity := 10.0);\nEND_FUNCTION_BLOCK\n")
+    run("new", "homed", "--from", "homed.scl")
+    text = (work / "homed.yaml").read_text()
+    assert "Feed: {type: axis, task: main, needs_power: true, needs_homing: true}" in text, text
+    write("homed.yaml", text + "expect:\n  - {at: end, p.a.Error: true}\n")
+    run("run", "homed.yaml", "--quiet")
+    write("beside/lib/own.st", "NAMESPACE Own\nFUNCTION Twice : INT\nVAR_INPUT a : INT; END_VAR\nTwice := 2 * a;\nEND_FUNCTION\nEND_NAMESPACE\n")
+    write("beside/tests/own_test.st", "TEST 'twice'\n ASSERT_EQ(Own.Twice(2), 4);\nEND_TEST\n")
+    folder = str(work / "beside") + "/"
+    assert f"--source {folder} looks there, too" in run("test", str(work / "beside/tests"), code=1)
+    assert "looks there" not in run("test", str(work / "beside/tests"), "--source", str(work / "beside"))
+
+
 def check_called_programs():
     """Axes in a PROGRAM that MAIN calls, and in instances in it; what is called is not scanned by its task as well."""
     twincat("called", "POU", "MAIN", "PROGRAM MAIN\nVAR p : MC_Power; END_VAR", "Axes();")
@@ -2224,6 +2240,7 @@ with tempfile.TemporaryDirectory() as temporary:
     check_left_over()
     check_axes_of_lists()
     check_axes_of_groups()
+    check_axes_of_siemens()
     check_called_programs()
     check_axes_of_suites()
     check_suites_of_programs()

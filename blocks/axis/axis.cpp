@@ -93,6 +93,9 @@ std::span<const Field> Axis::fields() {
         parameter("needs_power", &A::needs_power, "",
                   "disabled until MC_Power gives it power; else an axis has power that no MC_Power "
                   "has switched off"),
+        parameter("needs_homing", &A::needs_homing, "",
+                  "Siemens' MC_MOVEABSOLUTE is an error until MC_HOME has made the position known; "
+                  "else the encoder knows it from the beginning"),
         parameter(
             "transition_quantum", &A::transition_quantum, "s",
             "a slave gets into gear in whole steps of this, from the start of its job, each at "
@@ -166,7 +169,7 @@ std::optional<Misfit> Axis::misfit(const IsConstant&) const {
 double within_period(double position, double period) {
     if (!(period > 0)) return position;
     const double rest = std::fmod(position, period);
-    return rest < 0 ? (rest + period < period ? rest + period : 0) : rest;
+    return rest < 0 ? (rest + period < period ? rest + period : 0) : rest + 0.0;  // not -0
 }
 
 void Axis::scan(const Scan& now, const Context& context) {

@@ -116,7 +116,7 @@ struct Axis {
            default_jerk = 5e4;
     double start_position = 0;
     double transition_quantum = 0;
-    bool needs_power = false;
+    bool needs_power = false, needs_homing = false;
 
     double actual_position = 0;
 

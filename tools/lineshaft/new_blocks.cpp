@@ -156,24 +156,36 @@ void fill_groups(const projects::Project& project, std::vector<NewBlock>& blocks
     std::ranges::move(members, std::back_inserter(blocks));
 }
 
+bool has_ending(const projects::Project& project, std::string_view ending) {
+    return std::ranges::any_of(project.sources, [&](const auto& source) {
+        const std::string path = lower(source->path);
+        const std::size_t dot = path.rfind('.');
+        return dot != path.npos && path.substr(dot).starts_with(ending);
+    });
+}
+
+bool is_of_siemens(const projects::Project& project) {
+    return has_ending(project, ".scl") || has_ending(project, ".s7") || has_ending(project, ".db");
+}
+
 /// The limits of axes are in a device tree that is not read: as much as no program asks for. What
 /// TwinCAT and SCL leave open is the axis' own, so that those accelerations stay.
 void widen_limits(const projects::Project& project, std::vector<NewBlock>& blocks) {
-    const auto ends = [&](std::string_view ending) {
-        return std::ranges::any_of(project.sources, [&](const auto& source) {
-            const std::string path = lower(source->path);
-            const std::size_t dot = path.rfind('.');
-            return dot != path.npos && path.substr(dot).starts_with(ending);
-        });
-    };
-    if (ends(".scl") || ends(".s7") || ends(".db")) return;
+    if (is_of_siemens(project)) return;
     const std::pair<std::string, std::string> wide[] = {{"default_velocity", "10000 mm/s"},
                                                         {"default_acceleration", "100000 mm/s^2"},
                                                         {"default_deceleration", "100000 mm/s^2"},
                                                         {"default_jerk", "1e7 mm/s^3"}};
-    const std::span given(wide, ends(".tc") ? 1 : std::size(wide));
+    const std::span given(wide, has_ending(project, ".tc") ? 1 : std::size(wide));
     for (NewBlock& block : blocks)
         if (block.type == "axis") block.given.insert(block.given.end(), given.begin(), given.end());
+}
+
+/// Whether an axis of Siemens has an absolute encoder is in its technology object.
+void need_homing(const projects::Project& project, std::vector<NewBlock>& blocks) {
+    if (!is_of_siemens(project)) return;
+    for (NewBlock& block : blocks)
+        if (block.type == "axis") block.given.emplace_back("needs_homing", "true");
 }
 
 /// A block for each axis that a program or a list of globals keeps for itself, as TwinCAT links
@@ -252,6 +264,7 @@ std::vector<NewBlock> blocks_around(const st::Library& library, const projects::
     owners.insert(owners.end(), programs.begin(), programs.end());
     std::ranges::move(axes_of(library, owners), std::back_inserter(blocks));
     widen_limits(project, blocks);
+    need_homing(project, blocks);
     std::ranges::move(owners, std::back_inserter(blocks));
     return blocks;
 }

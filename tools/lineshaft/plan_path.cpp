@@ -77,6 +77,26 @@ PathLimits limits_of(const std::vector<std::string>& texts) {
     return limits;
 }
 
+/// Where a path stands that leads nowhere.
+PathMotion at_rest(const PathVector& position) {
+    PathMotion made{};
+    made.position = position;
+    return made;
+}
+
+/// A finite number above 0, or not below it.
+CLI::Validator number_above_zero(bool may_be_zero) {
+    const auto refuse = [may_be_zero](const std::string& text) {
+        double value = 0;
+        const bool fits =
+            read_number(text, "", value).empty() && (value > 0 || (may_be_zero && value == 0));
+        return fits ? std::string()
+                    : fmt::format("'{}' is not a number {}", text,
+                                  may_be_zero ? "that is 0 or above" : "above 0");
+    };
+    return CLI::Validator(refuse, "");
+}
+
 }  // namespace
 
 const std::string_view path_help =
@@ -87,7 +107,9 @@ const std::string_view path_help =
     "path.\n"
     "Numbers may have a unit, the same one in all rows of a column. A path with a line that "
     "cannot\n"
-    "be read is not planned: bad_line. The motion is that of MC_MovePath. A row each:\n"
+    "be read is not planned: bad_line; nor is one on which axes 4 to 6 move alone, if --limits "
+    "has\n"
+    "none of axes: no_limits_of_axes. The motion is that of MC_MovePath. A row each:\n"
     "  path,ok,error,points,pieces,length,duration\n"
     "or with --every one each so many seconds, and one at the instant at which the path ends:\n"
     "  path,time,distance,velocity,acceleration,jerk,position1..position6";
@@ -108,11 +130,11 @@ void add_path_options(CLI::App& sub, PathOptions& options, bool& is_path) {
     path->needs(limits);
     sub.add_option("--deviation", options.deviation, "Round corners within so much of the curves")
         ->type_name("U")
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_above_zero(true))
         ->needs(path);
     sub.add_option("--every", options.every, "A row each so many seconds along the path")
         ->type_name("S")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_zero(false))
         ->needs(path);
 }
 
@@ -237,7 +259,7 @@ std::string PathPlanner::read_point(std::string_view text, PathTablePoint& point
 void PathPlanner::begin(double name, const PathVector& start) {
     name_ = name;
     from_ = start_ = start;
-    has_bad_line_ = has_too_many_rows_ = false;
+    has_bad_line_ = has_too_many_rows_ = lacks_limits_ = false;
     path_ = {};
     waiting_.clear();
     next_ = 0;
@@ -274,6 +296,8 @@ void PathPlanner::append(const PathCurve& curve) {
     joint.distance = PathJoint::any, joint.deviation = options_.deviation;
     PathLimits limits = limits_;
     if (!curve.is_in_space()) limits.path = no_path_limit;
+    lacks_limits_ = !curve.is_in_space() && options_.limits.size() == 1;
+    if (lacks_limits_) return void(fault_ = PathFault::limit_not_positive);
     fault_ = path_.append(ring_, curve, limits, joint);
 }
 
@@ -286,7 +310,7 @@ void PathPlanner::run(std::string& rows, std::uint64_t piece) {
         const double sample = static_cast<double>(samples_) * options_.every;
         if (options_.every > 0 && !(duration_ < sample)) {
             path_.advance_to(ring_, 0, piece);
-            write_sample(sample, rows);
+            write_sample(sample, path_.now(ring_), rows);
             ++samples_;
             continue;
         }
@@ -305,8 +329,7 @@ bool PathPlanner::takes_too_many_rows() const {
            duration_ + (path_.leg.duration() - path_.time) > most_rows * options_.every;
 }
 
-void PathPlanner::write_sample(double time, std::string& rows) const {
-    const PathMotion m = path_.now(ring_);
+void PathPlanner::write_sample(double time, const PathMotion& m, std::string& rows) const {
     rows += fmt::format("{}", name_.value_or(1));
     append_number(rows, time);
     for (const double x : {m.way.position, m.way.velocity, m.way.acceleration, m.way.jerk})
@@ -321,10 +344,11 @@ void PathPlanner::end(std::string& rows) {
     if (!has_bad_line_) run(rows, Path::to_end);
     const bool ok = fault_ == PathFault::none && !has_bad_line_ && !has_too_many_rows_;
     const std::string_view why = has_bad_line_        ? "bad_line"
+                                 : lacks_limits_      ? "no_limits_of_axes"
                                  : has_too_many_rows_ ? "it takes more than 1e12 rows"
                                                       : text_of(fault_);
-    if (options_.every > 0 && ok && path_.finished() && path_.count > 0)
-        write_sample(duration_, rows);
+    if (options_.every > 0 && ok && path_.finished())
+        write_sample(duration_, path_.count > 0 ? path_.now(ring_) : at_rest(from_), rows);
     if (options_.every == 0) {
         rows += fmt::format("{},{},{},{},{}", *name_, ok ? 1 : 0, why, points_, path_.count);
         if (ok) {

@@ -49,7 +49,7 @@ class PathPlanner {
     void append(const PathCurve& curve);
     void run(std::string& rows, std::uint64_t piece);
     bool takes_too_many_rows() const;
-    void write_sample(double time, std::string& rows) const;
+    void write_sample(double time, const PathMotion& motion, std::string& rows) const;
     void end(std::string& rows);
 
     bulk::CountedLines lines_;
@@ -66,7 +66,8 @@ class PathPlanner {
     std::size_t next_ = 0;                 ///< the first of those to come
     PathVector start_{}, from_{};
     PathFault fault_ = PathFault::none;
-    bool has_bad_line_ = false, has_too_many_rows_ = false;  ///< of the path under way
+    bool has_bad_line_ = false, has_too_many_rows_ = false,
+         lacks_limits_ = false;  ///< of the path under way
     std::size_t points_ = 0, samples_ = 0;
     double duration_ = 0;  ///< so far [s]
 };

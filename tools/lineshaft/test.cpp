@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "runtime/run/side_by_side.hpp"
+#include "runtime/source/letters.hpp"
 #include "runtime/st/library/coverage.hpp"
 #include "runtime/trace/output_file.hpp"
 #include "tools/lineshaft/command.hpp"
@@ -201,6 +202,27 @@ bool are_there(const std::vector<std::string>& paths) {
     return std::ranges::none_of(paths, is_missing);
 }
 
+/// The folder above the first one with tests that is given, where what nobody declares may be.
+/// Empty: all is declared, or sources are given.
+std::string folder_to_look_in(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
+    const auto is_undeclared = [](const std::string& failure) {
+        return failure.find("error[L0904]") != failure.npos;
+    };
+    const bool lacks = std::ranges::any_of(entries, [&](const SuiteEntry& entry) {
+        return entry.error && std::ranges::any_of(entry.failures, is_undeclared);
+    });
+    if (!lacks || !command.sources.empty()) return {};
+    const auto is_of_tests = [](const std::string& path) {
+        std::error_code error;
+        const std::string name = lower(std::filesystem::path(path).filename().string());
+        return name.find("test") != name.npos && std::filesystem::is_directory(path, error);
+    };
+    const auto first = std::ranges::find_if(command.paths, is_of_tests);
+    return first == command.paths.end()
+               ? std::string()
+               : (std::filesystem::path(*first) / "..").lexically_normal().string();
+}
+
 Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) {
     const auto failed =
         std::ranges::count_if(entries, [](const SuiteEntry& e) { return !e.failures.empty(); });
@@ -213,6 +235,8 @@ Exit finish(const TestCommand& command, const std::vector<SuiteEntry>& entries) 
     if (!slow.empty())
         fmt::print("skipped as slow, --slow runs {}: {}\n", slow.size() == 1 ? "it" : "them",
                    fmt::join(slow, ", "));
+    if (const std::string folder = folder_to_look_in(command, entries); !folder.empty())
+        fmt::print("what nobody declares may stand above: --source {} looks there, too\n", folder);
     if (!check_files(command, {})) return Exit::wrong;
     const bool written =
         write(command.junit, junit_xml(entries)) && write(command.coverage, st::lcov_text());

@@ -242,8 +242,11 @@ void construct(Checking& c, const Constructing& at, const Type& type,
     if (type.kind == Kind::structure) {
         for (const Variable* member : type.members) {
             const auto own = [&] { return make_member(c, part(), member->text); };
-            if (at.phase == Phase::members && c.begins_of_members.contains(member))
-                to.push_back(assign_first(c, own(), *c.begins_of_members[member], *member->type));
+            const auto begins = c.begins_of_members.find(member);
+            if (at.phase == Phase::members && begins != c.begins_of_members.end()) {
+                const Expression* value = with_members(c, begins->second, type.members, part);
+                to.push_back(assign_first(c, own(), *value, *member->type));
+            }
             construct(c, at, *member->type, member->constructed, own, to);
         }
         return;
@@ -313,6 +316,10 @@ bool is_first(const Checking& c, const Routine& block) {
 
 bool is_constructed(const Checking& c, const Type* type) {
     return is_called(c, Phase::init, type);
+}
+
+bool begins_by_itself(const Checking& c, const Type* type) {
+    return is_constructed(c, type) || is_called(c, Phase::members, type);
 }
 
 bool is_followed(const Checking& c, const Type* type) {

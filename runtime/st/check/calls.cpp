@@ -262,7 +262,7 @@ void check_standard_arguments(Checking& c, Expression*& e, const Type& type) {
     std::vector<Variable*> pins;
     std::ranges::copy_if(type.members, std::back_inserter(pins),
                          [](const Variable* member) { return member->section != Section::local; });
-    const std::vector<std::string> names = names_of(pins);
+    const std::vector<std::string> names = shown_names(pins, e->place);
     std::size_t position = 0;
     for (Argument& argument : call.arguments) {
         Variable* found = nullptr;

@@ -178,6 +178,8 @@ struct Checking {
     std::unordered_map<const Variable*, Routine*> routines_of_members = {};
     /// What members begin with that is no constant: each variable of their type assigns it.
     std::unordered_map<const Variable*, Expression*> begins_of_members = {};
+    /// Members that begin with others of their structure, and those before them.
+    std::unordered_map<const Variable*, std::span<Variable* const>> members_before = {};
     int loops = 0;                     ///< around the statement
     bool is_before_finally = false;    ///< the statement stands in a __TRY that has a __FINALLY
     std::vector<NameSet> labels = {};  ///< of each list of statements around it

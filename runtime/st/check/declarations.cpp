@@ -357,7 +357,10 @@ void make_constant(Checking& c, Variable& variable) {
         return;
     }
     check_initial(c, variable);
-    if (variable.initial->kind == E::constant) variable.value = variable.initial->constant;
+    if (variable.initial->kind == E::constant)
+        variable.value = variable.initial->constant;
+    else
+        variable.type = nullptr;  // what it is was told to be unknown
 }
 
 void refuse_object(Checking& c, const Declaration& declared, const Type* type) {

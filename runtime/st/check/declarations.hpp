@@ -79,6 +79,17 @@ void check_initial(Checking& c, Variable& variable);
 /// then.
 void check_initial(Checking& c, Expression*& value, const Type& type);
 
+// members_by_others.cpp
+
+/// What a member of a structure begins with may name members before it, where nothing else has that
+/// name: `STRUCT b : Block; i : I_Block := b; END_STRUCT`. Notes those members.
+void note_members_by_others(Checking& c, const Type& structure);
+/// Whether `value` of such a member does so: all else in it is checked then.
+bool begins_by_others(Checking& c, const Variable& member, Expression*& value);
+/// That value where the structure is what `structure` makes a node of each time.
+Expression* with_members(Checking& c, Expression* e, std::span<Variable* const> members,
+                         const std::function<Expression*()>& structure);
+
 // beginnings.cpp
 
 /// What a variable begins with, where that is no constant: `p : POINTER TO INT := ADR(x);`. It is
@@ -88,6 +99,8 @@ bool begin_with(Checking& c, Expression*& value, const Type& type);
 
 /// It is a block that has an FB_init, or has such in it.
 bool is_constructed(const Checking& c, const Type* type);
+/// Or has members that begin with what is no constant, before what its variable declares.
+bool begins_by_itself(const Checking& c, const Type* type);
 /// Or has a method that follows that.
 bool is_followed(const Checking& c, const Type* type);
 /// It is one with an FB_init of its own or its base, or an array of such.

@@ -9,6 +9,7 @@
 #include "runtime/st/syntax/literals.hpp"
 #include "runtime/st/types/packed.hpp"
 #include "runtime/st/types/s5.hpp"
+#include "runtime/st/vendors/names.hpp"
 
 namespace lineshaft::st {
 
@@ -50,9 +51,11 @@ std::optional<ImageAddress> address_of(Checking& c, const Token& token) {
     if (token.place.dialect().image_has_points)
         if (const auto point = point_of(c, token.text)) return point;
     if (!address) {
+        const std::string_view instead = instead_of_address(token.text);
         c.fail(code::not_declared, token.place, fmt::format("'{}' is not an address", token.text),
-               "write the area I, Q or M, the size X, B, W, D or L, and the byte: %IX0.3, %QW4, "
-               "%MD8");
+               std::string(!instead.empty() ? instead
+                                            : "write the area I, Q or M, the size X, B, W, D or L, "
+                                              "and the byte: %IX0.3, %QW4, %MD8"));
         return {};
     }
     c.fail(code::value_out_of_range, token.place,
@@ -105,10 +108,19 @@ bool takes_size(Checking& c, const Variable& variable, ImageAddress& address, co
     return true;
 }
 
+/// A part of it is wrong, which was told.
+bool has_unknown(const Type* type) {
+    if (!type) return true;
+    if (type->kind == Kind::array) return has_unknown(type->element);
+    const auto is_unknown = [](const Variable* member) { return has_unknown(member->type); };
+    return type->kind == Kind::structure && std::ranges::any_of(type->members, is_unknown);
+}
+
 /// The area has all bits that the variable has.
 bool fits(Checking& c, const Variable& variable, ImageAddress& address, const Token& at) {
     const Type& type = *variable.type;
     const std::uint64_t bits = packed_bits(type, at.place.dialect());
+    if (bits == 0 && has_unknown(&type)) return false;
     if (bits == 0)
         return c.fail(code::type_does_not_fit, at.place,
                       fmt::format("{} stands at no address", describe(type)),

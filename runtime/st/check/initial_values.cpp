@@ -381,11 +381,15 @@ void check_initial(Checking& c, Variable& variable) {
         Expression* value = &written;
         const bool is_of_type = !c.routine || c.routines_of_members.contains(&variable);
         const bool begins = variable.space == Space::global || (c.routine && variable.of);
-        const Checking::Beginning own{.variable = begins ? &variable : nullptr,
-                                      .member = begins || !is_of_type ? nullptr : &variable,
-                                      .is_constructed = begins && is_constructed(c, variable.type)};
+        const Checking::Beginning own{
+            .variable = begins ? &variable : nullptr,
+            .member = begins || !is_of_type ? nullptr : &variable,
+            .is_constructed = begins && begins_by_itself(c, variable.type)};
         Checking::Beginning outer = std::exchange(c.beginning, own);
-        check_initial(c, value, *variable.type);
+        if (own.member && begins_by_others(c, variable, value))
+            begin_with(c, value, *variable.type);
+        else
+            check_initial(c, value, *variable.type);
         const bool is_made = std::exchange(c.beginning, std::move(outer)).is_made;
         if (is_made) return void(variable.initial = value);
         written.initial = value;

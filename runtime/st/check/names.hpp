@@ -41,6 +41,8 @@ Variable* find_member(const Type& type, std::string_view name);
 
 /// What a suggestion is chosen from.
 std::vector<std::string> names_of(const std::vector<Variable*>& variables);
+/// Those of a standard block's parts as the dialect there calls them.
+std::vector<std::string> shown_names(const std::vector<Variable*>& parts, Place place);
 
 /// `motor.speed`, whose variable is noted; also `Colour.red`, and a part of a block that is a
 /// function. L0904 where there is none.

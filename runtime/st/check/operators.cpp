@@ -401,7 +401,7 @@ const Type* check_binary(Checking& c, Expression*& e, const Type* expected) {
     check(c, right, is_comparison(e->op) ? due_beside(left->type, *right) : wanted);
     if (!left->type || !right->type) return nullptr;
     if (is_comparison(e->op)) take_null_variant(c, *e);
-    if (e->op == Word::equal || e->op == Word::unequal) take_addresses(c, *e);
+    if (is_comparison(e->op)) take_addresses(c, *e);
     if (left->type->is_reference() || right->type->is_reference())
         return check_reference_operator(c, e, expected);
     if (is_logic(e->op)) return check_logic(c, e);

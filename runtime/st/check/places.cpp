@@ -29,6 +29,13 @@ std::vector<std::string> names_of(const std::vector<Variable*>& variables) {
     return names;
 }
 
+std::vector<std::string> shown_names(const std::vector<Variable*>& parts, Place place) {
+    if (!place.dialect().pins_have_long_names) return names_of(parts);
+    std::vector<std::string> names;
+    for (const Variable* part : parts) names.push_back(long_part_name(part->text));
+    return names;
+}
+
 namespace {
 
 /// The block, or that of its bases, which the variable stands in.
@@ -38,22 +45,32 @@ const Routine* declaring_block(const Routine& block, const Variable& variable) {
     return found;
 }
 
-/// Its members; of a timer and its like the pins alone, which are all that the standard has.
+bool is_of_library(const Type& type) {
+    return type.kind == Kind::block && is_library(type.routine->pou->name);
+}
+
+/// Its members; of a timer and its like, and of a library's block, the pins alone, which are all
+/// that the standard or the library's manual has.
 std::vector<Variable*> told_members(const Type& type) {
     std::vector<Variable*> members =
         type.kind == Kind::block ? all_variables(*type.routine) : type.members;
-    if (type.kind == Kind::standard && !type.is_object())
+    if ((type.kind == Kind::standard && !type.is_object()) || is_of_library(type))
         std::erase_if(members, [](const Variable* m) { return m->section == Section::local; });
     return members;
 }
 
 /// `type` has no member `name`: nothing, and what is there instead is said.
 const Type* fail_member(Checking& c, const Expression& e, const Type& type, std::string_view name) {
-    std::vector<std::string> names = names_of(told_members(type));
+    std::vector<std::string> names = type.kind == Kind::standard
+                                         ? shown_names(told_members(type), e.place)
+                                         : names_of(told_members(type));
     if (lacks_base(type)) return nullptr;
     if (type.kind == Kind::interface)
         for (const auto known : {&Routine::methods, &Routine::getters})
             for (const auto& [method, routine] : type.routine->*known) names.emplace_back(method);
+    if (is_of_library(type))
+        for (const auto& [method, routine] : type.routine->methods)
+            if (routine->pou->access != Access::private_) names.emplace_back(method);
     if (names.empty())
         return c.fail(code::type_does_not_fit, e.token.place,
                       fmt::format("{} has no parts", describe(type)),

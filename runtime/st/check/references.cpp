@@ -384,6 +384,8 @@ bool means_address(const Expression& e, const Expression& other) {
 }
 
 void take_addresses(Checking& c, Expression& e) {
+    const bool is_order = e.op != Word::equal && e.op != Word::unequal;
+    if (is_order && !e.place.dialect().references_take_numbers) return;
     for (std::size_t at = 0; at < 2; ++at) {
         Expression*& side = e.operands[at];
         if (means_address(*side, *e.operands[1 - at]))

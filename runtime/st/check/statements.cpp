@@ -460,6 +460,7 @@ void check_assignment(Checking& c, Statement*& s) {
     const bool is_of_target = s->target->kind == E::deref, begins = c.beginnings.contains(s);
     const bool renews = c.renewals.contains(s);
     const Type* type = check(c, s->target);
+    if (type && s->op != Word::reference_assign && rewrite_axis_interface(c, s)) return;
     s->target = keeper_of_pointer(s->target);
     if (type) type = s->target->type;
     if (type && type->is_open_array() && is_of_target)

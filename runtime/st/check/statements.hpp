@@ -13,6 +13,12 @@ void check(Checking& c, Statement*& s);
 /// `target := value;`; `+=` is one of a sum. L0910 for what may not be assigned.
 void check_assignment(Checking& c, Statement*& s);
 
+// axis_interfaces.cpp
+
+/// `axis.PlcToNc.Override := 5;` of a checked target is written by the library's block for that,
+/// FUNCTION_BLOCK PlcToNcWriter. False: it is another assignment.
+bool rewrite_axis_interface(Checking& c, Statement*& s);
+
 // action_calls.cpp
 
 /// `Turn;` of an ACTION becomes its call; another name alone does nothing.

@@ -83,8 +83,27 @@ static bool take_count(Checking& c, Expression& e) {
     return true;
 }
 
+/// `moment + 5` of B&R is of seconds. Empty: it is none.
+static std::optional<const Type*> check_counted_seconds(Checking& c, Expression*& e) {
+    const bool moves_by_seconds = e->place.dialect().seconds_move_moments;
+    if (moves_by_seconds && e->op == Word::plus && e->operands[0]->type->is_integer())
+        e = make_binary(c, e->place, e->token.place, e->op, e->operands[1], e->operands[0]);
+    const Type& moment = *e->operands[0]->type;
+    Expression*& number = e->operands[1];
+    const bool is_it = moves_by_seconds && moment.kind == Kind::moment &&
+                       number->type->is_integer() && (e->op == Word::plus || e->op == Word::minus);
+    if (!is_it) return {};
+    if (!coerce(c, number, lint_type)) return nullptr;
+    Expression* second = make_constant(c, *number, lint_type, {.integer = 1'000'000'000});
+    number = make_binary(c, number->place, number->place, Word::times, number, second);
+    if (!check(c, number, &lint_type)) return nullptr;
+    convert(c, number, moment);
+    return become_date(c, e, moment);
+}
+
 const Type* check_time_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
+    if (const auto type = check_counted_seconds(c, e)) return *type;
     if (!take_count(c, *e)) return nullptr;
     Expression *&left = e->operands[0], *&right = e->operands[1];
     if (left->type->is_date() || right->type->is_date()) return check_date_arithmetic(c, e);

@@ -145,6 +145,7 @@ const Type* resolve_structure(Checking& c, const TypeText& text) {
         place_member(c, *declared, text.overlaps, *type.members.back());
         if (c.routine) c.routines_of_members.emplace(type.members.back(), c.routine);
     }
+    note_members_by_others(c, type);
     return is_union && !has_packed_form(c, text, type) ? nullptr : &type;
 }
 

@@ -327,6 +327,7 @@ void write_try(Writing& w, const Statement& s) {
 
 void write_call(Writing& w, const Expression& e) {
     if (e.kind == Expression::Kind::constant) return;
+    if (e.kind != Expression::Kind::call) return void(value(w, e));  // ROL of a BOOL is that
     if (e.test != TestCall::none) return write_test_statement(w, e);
     const Type* callee = e.operands[0]->type;
     if ((e.routine && e.routine->has_instances()) || (callee && callee->is_instance()))

@@ -53,6 +53,7 @@ const Dialect automation_studio = [] {
     made.takes_what_others_refuse = made.actions_are_of_callers = made.times_take_numbers = true;
     made.words_of_dates_count_seconds = made.in_outs_take_any_text = true;
     made.references_take_numbers = true;
+    made.seconds_move_moments = true;
     made.ampersands_may_be_two = false;
     made.open_texts_end_with_lines = made.texts_end_at_zero = true;
     made.beyond_type = BeyondType::left_in_register;
@@ -70,6 +71,7 @@ const Dialect codesys = {.sign_precedes_power = true,
                          .is_loose = true,
                          .programs_are_named = true,
                          .texts_are_bytes = true,
+                         .pins_have_long_names = true,
                          .vendor = Vendor::codesys,
                          .charts = ChartRules::codesys,
                          .other_choice = OtherChoice::last,
@@ -153,6 +155,7 @@ const Dialect matiec = [] {
     made.instance_root = iec.instance_root;
     made.functions_are_in_c = made.functions_keep_widths = made.ands_end_early = true;
     made.disabled_calls_give_zero = true;
+    made.pins_have_long_names = false;
     made.addresses_count = AddressCount::sizes_apart;
     made.text_of_real = TextOfReal::shortest;
     made.enumerations_begin_at_zero = made.rounds_away = false;
@@ -181,6 +184,7 @@ const Dialect scl = {.sign_precedes_power = false,
                      .numbers_stand_for_names = true,
                      .texts_of_integers_have_signs = true,
                      .packs_as_s7 = true,
+                     .begin_is_no_name = true,
                      .vendor = Vendor::siemens,
                      .has_s7_instructions = true,
                      .other_choice = OtherChoice::initial,

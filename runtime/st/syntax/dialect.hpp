@@ -76,6 +76,9 @@ struct Dialect {
     bool loops_begin_narrowed = false;  ///< FOR in an INT from a DINT on, as there: a warning
     bool capitals_count = false;        ///< declarations of B&R: `a` and `A` are two names
     bool packs_as_s7 = false;           ///< bytes of packed memory: the highest first, words even
+    bool begin_is_no_name = false;      ///< BEGIN ends the declarations, whatever follows
+    bool seconds_move_moments = false;  ///< `moment + 5` of a DT
+    bool pins_have_long_names = false;  ///< of the standard's blocks in messages: RESET, not r
     bool references_take_addresses = false;  ///< `r := ADR(x)` and `r <> 0` of a REFERENCE TO
     Vendor vendor = Vendor::none;            ///< whose instances begin as find_beginning says
     bool has_s7_instructions = false;        ///< VARIANT, DTL, S5 timers, ENO of functions, bytes

@@ -154,12 +154,26 @@ bool is_end_of_real(const TextCursor& in) {
     return in.dialect.points_may_end_reals && in.peek(1) != '.' && !is_letter(in.peek(1));
 }
 
+/// `THEN` of `16#D013THEN`: the word that a number without a blank behind it ends before. None
+/// where the letters are no word: the number is wrong as a whole then.
+std::size_t end_of_based_number(const TextCursor& in) {
+    const bool is_hexadecimal = in.text.substr(in.start, in.at - in.start) == "16#";
+    const auto is_digit_here = [&](char c) {
+        return is_digit(c) || c == '_' || (is_hexadecimal && lower(c) >= 'a' && lower(c) <= 'f');
+    };
+    std::size_t first = in.at;
+    while (first < in.text.size() && is_digit_here(in.text[first])) ++first;
+    std::size_t end = first;
+    while (end < in.text.size() && (is_letter(in.text[end]) || is_digit(in.text[end]))) ++end;
+    return word_of(in.text.substr(first, end - first)) ? first : end;
+}
+
 void read_number(TextCursor& in) {
     const auto digits = [&] { in.skip_while([](char c) { return is_digit(c) || c == '_'; }); };
     digits();
     if (in.peek() == '#') {
         ++in.at;
-        in.skip_while([](char c) { return is_letter(c) || is_digit(c); });
+        in.at = end_of_based_number(in);
         return void(in.add(Word::integer));
     }
     bool real = false;

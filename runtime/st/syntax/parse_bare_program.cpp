@@ -14,7 +14,7 @@ bool begins_statement(const Token& token, const Token& behind) {
                                             open_bracket, caret,       set_assign,
                                             reset_assign, plus_assign, minus_assign};
     if (std::ranges::find(words, token.word) != std::end(words)) return true;
-    return is_name(token.word) &&
+    return (is_name(token.word) || token.word == direct) &&
            std::ranges::find(behind_names, behind.word) != std::end(behind_names);
 }
 

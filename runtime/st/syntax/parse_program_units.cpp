@@ -56,6 +56,15 @@ void parse_header(Parsing& p, Pou& pou) {
     p.accept(Word::semicolon);
 }
 
+/// A variable of this name outside of Siemens' languages, where BEGIN ends the declarations.
+bool at_variable_begin(const Parsing& p) {
+    using enum Word;
+    static constexpr Word behind[] = {assign, plus_assign,  minus_assign, set_assign, reset_assign,
+                                      open,   open_bracket, dot,          caret};
+    return !p.source->dialect.begin_is_no_name &&
+           std::ranges::find(behind, p.next().word) != std::end(behind);
+}
+
 bool may_have_parts(const Pou& pou) {
     return pou.kind == PouKind::function_block || pou.kind == PouKind::program ||
            pou.kind == PouKind::interface;
@@ -228,7 +237,7 @@ Pou* parse_pou(Parsing& p) {
     if (pou.doc.empty()) pou.doc = comment_before(p, p.at, true);
     parse_sections(p, pou, words.end);
     if (std::exchange(p.is_spoiled, false)) return skip_past(p, words.end), &pou;
-    p.accept(Word::begin_);
+    if (!at_variable_begin(p)) p.accept(Word::begin_);
     p.is_in_body = true;
     parse_body(p, pou, words.end);
     for (const Token& region : std::exchange(p.regions, {}))

@@ -73,10 +73,16 @@ constexpr Instead names_of_vendors[] = {
      "this is of Omron's Sysmac Studio: declare a FUNCTION or a variable of this name"},
     {" cop cps jsr osri osrr tonr tofr rtor gsv ssv ",
      "this is an instruction of Rockwell's Logix: declare a FUNCTION or a FUNCTION_BLOCK of this "
-     "name"}};
+     "name"},
+    {" out_t out_c out_h ldp ldf ldpi ldfi plf rst dmov bmov fmov mep mef ",
+     "this is an instruction of Mitsubishi's: declare a FUNCTION or a FUNCTION_BLOCK of this name"},
+    {" re fe ", "if it is Schneider's, declare an R_TRIG or an F_TRIG, and take its Q"}};
+
+/// What stands between '%' and a number there.
+constexpr std::string_view areas_of_schneider = " s sw sd kw kd kf tm drs pls pwm vc msg ";
 
 /// What numbers stand behind in the names of devices of Mitsubishi and Keyence.
-constexpr std::string_view devices = " x y m d b w l r sm sd mr dm lr em ";
+constexpr std::string_view devices = " x y m d b w l r sm sd mr dm lr em tc ts tn cc cs cn ";
 
 constexpr Instead inputs_of_vendors[] = {
     {" cam ", "select the cam with MC_CamTableSelect, and give its CamTableID"}};
@@ -108,6 +114,14 @@ std::string_view instead_of_undeclared(std::string_view name, bool may_be_device
     return is_device ? "if it is a device of Mitsubishi's or Keyence's controllers, declare it: "
                        "VAR_GLOBAL M0 : BOOL; D0 : INT; END_VAR"
                      : instead;
+}
+
+std::string_view instead_of_address(std::string_view address) {
+    const std::size_t digits = address.find_first_of("0123456789");
+    const bool is_schneiders = address.starts_with('%') && digits != address.npos &&
+                               has_word(areas_of_schneider, address.substr(1, digits - 1));
+    return is_schneiders ? "this is of Schneider's controllers: declare a variable for it"
+                         : std::string_view();
 }
 
 std::string_view instead_of_input(std::string_view name) {

@@ -42,12 +42,11 @@ constexpr Renamed types[] = {
     {"dword", " conn_r_id event_any event_att event_hwint aom_ident "},
 };
 
-constexpr Renamed parts[] = {{"r", " reset "},
-                             {"ld", " load "},
-                             {"s1", " set1 "},
-                             {"s", " set "},
-                             {"r1", " reset1 "},
-                             {"valid", " busy "},
+/// CODESYS' names of pins of flip-flops and counters, which others have besides.
+constexpr Renamed pins[] = {
+    {"r", " reset "}, {"ld", " load "}, {"s1", " set1 "}, {"s", " set "}, {"r1", " reset1 "}};
+
+constexpr Renamed parts[] = {{"valid", " busy "},
                              {"homingmode", " mode "},
                              {"q", " qu qd "},
                              {"enablepositive", " enable_positive "},
@@ -143,12 +142,24 @@ std::string_view standard_type_name(std::string_view name) {
 }
 
 std::string_view standard_part_name(std::string_view name) {
-    return standard_of(parts, name);
+    const std::string_view pin = standard_of(pins, name);
+    return pin.empty() ? standard_of(parts, name) : pin;
+}
+
+std::string long_part_name(std::string_view name) {
+    const bool is_plcopens = std::ranges::any_of(name, [](char c) { return lower(c) != c; });
+    if (is_plcopens) return std::string(name);
+    const auto* pin = std::ranges::find(pins, name, &Renamed::standard);
+    return upper(pin == std::end(pins) ? name : pin->theirs.substr(1, pin->theirs.size() - 2));
 }
 
 std::string_view standard_argument_name(std::string_view name) {
     const std::string_view standard = standard_of(arguments, name);
     return standard.empty() ? name : standard;
+}
+
+bool counts_for_axis(std::string_view member) {
+    return has_word(" controldword override ", member);
 }
 
 bool is_vendor_library(std::string_view name) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "runtime/model/catalog.hpp"
@@ -20,6 +21,10 @@ std::string_view standard_type_name(std::string_view name);
 /// What a kind of block calls a part that vendors call otherwise, where it has that: RESET is R.
 /// Empty for any other name.
 std::string_view standard_part_name(std::string_view name);
+
+/// What CODESYS calls a part of the standard's blocks: r is RESET, q is Q. One of PLCopen's blocks
+/// is as it is.
+std::string long_part_name(std::string_view name);
 
 /// What CODESYS' and SIMATIC AX' functions of texts call an argument, as the standard does: STR1
 /// and string1 are IN1, SIZE is L.
@@ -43,6 +48,9 @@ constexpr std::string_view library_called(std::string_view name) {
 
 /// Timers and counters of controllers themselves, filters, a clock; its names are seen as those.
 inline constexpr std::string_view siemens_step7 = "Siemens.Step7";
+
+/// What is written to it of TwinCAT's interface of an axis has an effect here.
+bool counts_for_axis(std::string_view member);
 
 /// `TON` of `Standard.TON`, where the first is such a library; else the name as it is.
 std::string_view without_library(std::string_view name);
@@ -89,6 +97,8 @@ const Beginning* find_beginning(std::string_view kind, Vendor vendor);
 std::string_view instead_of_type(std::string_view name, Vendor vendor);
 std::string_view instead_of_function(std::string_view name);
 std::string_view instead_of_input(std::string_view name);
+/// The same of an address, `%KW5`.
+std::string_view instead_of_address(std::string_view address);
 /// The same of what nobody declares, which another vendor's controller has: `GetTime`, and `X0`,
 /// where no other name is like it.
 std::string_view instead_of_undeclared(std::string_view name, bool may_be_device);
