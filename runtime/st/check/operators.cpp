@@ -262,8 +262,8 @@ bool may_be_single(const Type& a, const Type& b, bool is_due) {
     return fits(a) && fits(b) && (is_due || is_single(a) || is_single(b));
 }
 
-/// A power of two whole numbers without a type: whole where no real number is due. Empty: it is
-/// none, or is not known yet.
+/// A power of two whole numbers without a type: whole where no real number is due, in SCL where a
+/// whole one is, as all other powers are real there. Empty: it is none, or is not known yet.
 std::optional<const Type*> check_whole_power(Checking& c, Expression*& e, const Type* expected) {
     const Expression &base = *e->operands[0], &exponent = *e->operands[1];
     const auto is_whole = [](const Expression& o) {
@@ -276,7 +276,10 @@ std::optional<const Type*> check_whole_power(Checking& c, Expression*& e, const 
         value = product(value, base.constant.integer);
     if (exponent.constant.integer > 64 && base.constant.integer > 1) return {};
     const bool is_beyond = value >= most || value <= -most;
-    if (e->place.dialect().literals_suit_their_use || (expected && !expected->is_real())) {
+    const Dialect& dialect = e->place.dialect();
+    const bool is_whole_alone =
+        dialect.literals_suit_their_use && !dialect.real_results_reckon_as_real;
+    if (is_whole_alone || (expected && !expected->is_real())) {
         if (is_beyond)
             return c.fail(code::value_out_of_range, e->place, "the result is out of range");
         return become(c, e, any_integer_type, {.integer = value});

@@ -34,8 +34,8 @@ void become_whole_seconds(Checking& c, Expression*& time, const Type& moment) {
         convert(c, time, moment_type);
 }
 
-/// DATE - DATE, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT, on either side,
-/// and in CODESYS to a DATE.
+/// DATE - DATE, in SCL an LTIME, TOD - TOD and DT - DT are a TIME; one is added to a TOD and a DT,
+/// on either side, and in CODESYS to a DATE.
 const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     const Word op = e->op;
     if (op == Word::plus && e->operands[0]->type->kind == Kind::time)
@@ -49,7 +49,8 @@ const Type* check_date_arithmetic(Checking& c, Expression*& e) {
     if (!distance && !moves && !joins)
         return refuse_operands(
             c, *e, "a TIME is added to a TOD or a DT, and two dates have a TIME between them");
-    if (distance) return become_time(c, e, a.counts_ns);
+    const bool is_of_days = a.kind == Kind::date && e->place.dialect().dates_count_days;
+    if (distance) return become_time(c, e, a.counts_ns || is_of_days);
     if (moves && a.kind == Kind::moment) become_whole_seconds(c, e->operands[1], a);
     const bool within_day =
         moves && a.kind == Kind::clock && !e->place.dialect().dates_count_seconds;

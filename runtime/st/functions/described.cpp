@@ -51,6 +51,8 @@ constexpr DescribedFunction described_dates[] = {
     {"WR_SYS_T(IN: DTL or LDT): INT", "sets no clock, which is that of the run: gives 16#80B0"},
     {"TIME_TO_S5TIME(IN: TIME): S5TIME", "the nearest time that an S5TIME has, of the shortest base"},
     {"S5TIME_TO_TIME(IN: S5TIME): TIME", "the time of three digits and a base"},
+    {"LTIME_TO_S5TIME(IN: LTIME): S5TIME", "the nearest time that an S5TIME has, of the shortest base"},
+    {"S5TIME_TO_LTIME(IN: S5TIME): LTIME", "the time of three digits and a base"},
     {"RUNTIME(MEM: LREAL): LREAL", "the time since the call that left MEM [s], which it writes; within a scan none passes"},
 };
 constexpr DescribedFunction described_bytes[] = {
