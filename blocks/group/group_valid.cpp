@@ -96,7 +96,8 @@ bool is_valid(const PathStretch& stretch, std::uint64_t number, const Path& path
 bool is_valid(const Path& path, std::span<const PathPiece> ring) {
     constexpr std::uint64_t most = std::uint64_t{1} << 62;
     if (path.count > most || path.first > path.count || path.count - path.first > ring.size() ||
-        path.stretch > path.stretches || path.stretches - path.stretch > path.count - path.first ||
+        path.stretch > path.stretches || path.known > path.stretches || path.sure > path.known ||
+        path.stretches - path.stretch > path.count - path.first ||
         !are_booleans(path.halted, path.stale, path.fresh, path.lost) ||
         !is_valid(path.leg, path) || !std::isfinite(path.time) || path.time < 0 ||
         std::isnan(path.again))

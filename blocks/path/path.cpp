@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "blocks/path/path_ahead.hpp"
+#include "blocks/path/path_known.hpp"
 #include "blocks/path/path_spline.hpp"
 
 namespace lineshaft {
@@ -31,24 +32,6 @@ bool is_smooth(const PathCurve& before, const PathCurve& after) {
         if (std::abs(a.bend[i] - b.bend[i]) > rounding * bend) return false;
     }
     return true;
-}
-
-ConstPathStretches stretches_of(const Path& path, std::span<const PathPiece> ring) {
-    return {ring, path.stretch, path.stretches};
-}
-
-/// `relied`: what the leg under way needs holds still.
-void look_back_where_changed(Path& path, std::span<PathPiece> ring, bool relied = true) {
-    if (path.changed == path.stretches) return;
-    PathReliance on;
-    if (relied) on = {path.leg.goal + 1, path.leg.end_velocity()};
-    look_back({ring, path.stretch, path.stretches}, path.changed, on);
-    path.changed = path.stretches;
-}
-
-void note_change(Path& path, std::uint64_t stretch) {
-    path.changed = std::min(path.changed, stretch);
-    path.fresh = true;
 }
 
 MotionState state_of(const Path& path) {
@@ -110,19 +93,36 @@ IntoBoxes halt_harder(const Path& path, const PathOutlook& outlook, const Motion
     return left < otherwise ? IntoBoxes::none : found;
 }
 
+/// With as much of the path as counts for it.
+bool plan_leg_from(Path& path, std::span<PathPiece> ring, const MotionState& from, double base,
+                   const PathReliance& relied, PathLeg& leg) {
+    look_back_as_needed(path, ring, relied);
+    const auto is_planned = [&] {
+        return plan_leg(stretches_of(path, ring), from, base, factor_of(path), path.braking, leg);
+    };
+    bool is_found = is_planned();
+    if (is_found && is_sure(path, leg)) {
+        leg.ripe = Path::any_time;
+    } else if (path.known < path.stretches) {
+        look_back_from(path, ring, path.stretches, relied);
+        is_found = is_planned();
+    }
+    return is_found;
+}
+
 /// Plans anew from now; where that cannot be, what was planned goes on.
 bool plan_anew(Path& path, std::span<PathPiece> ring) {
     const bool commanded = path.stale;
-    look_back_where_changed(path, ring);
     path.fresh = false;
     if (commanded) path.vain = {};
     MotionState from = state_of(path);
     from.position = 0;
     const double base = place_of(path);
-    const PathOutlook outlook = outlook_of(path, ring);
     PathLeg leg;
     IntoBoxes into = IntoBoxes::soon;
-    if (!plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, leg))
+    const bool is_found = plan_leg_from(path, ring, from, base, reliance_of(path), leg);
+    const PathOutlook outlook = outlook_of(path, ring);
+    if (!is_found)
         into =
             path.leg.course.count > 0 ? plan_into_boxes(outlook, from, base, leg) : IntoBoxes::none;
     if (path.halted) into = halt_harder(path, outlook, from, into, leg);
@@ -137,7 +137,7 @@ bool plan_anew(Path& path, std::span<PathPiece> ring) {
 
 /// What is known of the path by now may make the course under way sooner.
 void go_on(Path& path, std::span<PathPiece> ring) {
-    look_back_where_changed(path, ring);
+    look_back_as_needed(path, ring, reliance_of(path));
     path.fresh = false;
     const PathOutlook outlook = outlook_of(path, ring);
     if (outlook.factor > 0 && path.time < path.leg.duration() &&
@@ -175,15 +175,16 @@ void enter_next(Path& path, std::span<PathPiece> ring) {
     const MotionState from{0, path.leg.end_velocity(), 0, 0};
     path.time = 0;
     path.stretch = path.leg.goal + 1;
-    look_back_where_changed(path, ring);
     const double base = path.leg.end;
     path.leg.stand(base, path.stretch);
     if (path.stretch == path.stretches) {
         path.first = path.count;
         return;
     }
+    const PathReliance relied{path.stretch, from.velocity};
+    path.lost = !plan_leg_from(path, ring, from, base, relied, path.leg);
+    if (path.lost) path.leg.stand(base, path.stretch);
     const PathOutlook outlook = outlook_of(path, ring);
-    path.lost = !plan_leg(outlook.stretches, from, base, outlook.factor, path.braking, path.leg);
     if (!path.lost && outlook.factor > 0) look_ahead(outlook, 0, path.leg, path.vain);
     note_leg(path, ring);
 }
@@ -272,58 +273,44 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
 
 /// After the last piece has been cut: whether what is planned holds still, or can be mended.
 bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
-    if (path.standing()) return true;
-    look_back_where_changed(path, ring, false);
+    if (path.standing() || cut >= path.known) return true;
+    if (is_sure(path, path.leg) && cut > path.stretch + most_pieces_ahead) {
+        look_back_from(path, ring, cut, {});
+        if (is_sure(path, path.leg)) return true;
+    }
+    look_back_from(path, ring, path.stretches, {});
     if (path.leg.goal < cut &&
         path.leg.end_velocity() <= stretches_of(path, ring).exit(path.leg.goal))
         return true;
     return plan_anew(path, ring);
 }
 
-/// The curves that round the joint of two, `far` from it, and the box of each.
+/// The curves that round the joint of two, and the box of each.
 struct Round {
-    std::size_t count = 0;
-    std::array<PathCurve, most_spline_parts> curves;
-    std::array<PathLimit, most_spline_parts> boxes;
+    double far = 0;     ///< from the joint they begin and end [u]
+    PathLimits limits;  ///< of each of them
+    std::span<const PathCurve> curves;
+    std::span<const PathLimit> boxes;
 };
 
-bool find_round(const PathCurve& before, const PathCurve& after, double far,
-                const PathLimits& limits, Round& out) {
-    const bool lines = before.kind == PathCurveKind::line && after.kind == PathCurveKind::line;
-    if (lines) {
-        out.count = 1;
-        out.curves[0] = corner_between(before, after, far);
-        out.boxes[0] = box_of_corner(before, after, out.curves[0].length, limits);
-    } else {
-        out.count = spline_between(before.at(before.length - far), after.at(far), out.curves);
-        for (std::size_t i = 0; i < out.count; ++i) out.boxes[i] = box_of(out.curves[i], limits);
-    }
-    for (std::size_t i = 0; i < out.count; ++i)
-        if (!is_good(out.boxes[i])) return false;
-    return out.count > 0 && out.count <= most_transition_parts;
-}
+/// What is appended: a curve with its box.
+struct Next {
+    PathCurve curve;
+    const PathLimit& box;
+    const PathLimits& limits;
+};
 
-/// Joins a line or an arc to the last one by a corner or a transition. False, and nothing has
-/// changed, where that cannot be.
-bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const PathLimit& box,
-                  const PathLimits& limits, const PathJoint& joint) {
-    if (path.finished() || path.count - path.first + 2 > ring.size()) return false;
+/// Between the last piece and the next one. False, and nothing has changed, where that cannot be.
+bool append_round(Path& path, std::span<PathPiece> ring, Next next, const Round& round) {
+    if (path.count - path.first + 1 + round.curves.size() > ring.size() ||
+        !std::all_of(round.boxes.begin(), round.boxes.end(), is_good))
+        return false;
     PathPiece& last = piece_at(ring, path.count - 1);
     PathStretch& cut = piece_at(ring, path.stretches - 1).stretch;
     const PathCurve curve = last.curve;
-    if (!curve.is_line_or_arc() || !next.is_line_or_arc() || is_smooth(curve, next)) return false;
-    const double most = std::min(joint.distance, room_of_corner(path, ring, next));
-    const double far = distance_within(joint.deviation, curve, next, most);
-    const PathLimits both = limits_between(last.limits, limits, joint.blend);
-    constexpr double least = 1e-9;
-    Round round;
-    if (!(far > least * (curve.length + next.length)) ||
-        !find_round(curve, next, far, both, round) ||
-        path.count - path.first + 1 + round.count > ring.size())
-        return false;
-    next.cut_start(far);
-    last.curve.cut_end(far);
-    if (!(last.curve.length > 0) || !(next.length > 0)) {
+    next.curve.cut_start(round.far);
+    last.curve.cut_end(round.far);
+    if (!(last.curve.length > 0) || !(next.curve.length > 0)) {
         last.curve = curve;
         return false;
     }
@@ -331,17 +318,58 @@ bool append_round(Path& path, std::span<PathPiece> ring, PathCurve next, const P
     const std::uint64_t count = path.count, stretches = path.stretches, changed = path.changed;
     const double total = path.total;
     path.total = cut.end = last.end();
-    for (std::size_t i = 0; i < round.count; ++i)
-        append_piece(path, ring, round.curves[i], both, round.boxes[i], any);
-    append_piece(path, ring, next, limits, box, any);
+    for (std::size_t i = 0; i < round.curves.size(); ++i)
+        append_piece(path, ring, round.curves[i], round.limits, round.boxes[i], any);
+    append_piece(path, ring, next.curve, next.limits, next.box, any);
     if (holds(path, ring, stretches - 1)) return true;
     path.count = count, path.stretches = stretches, path.changed = changed;
     path.total = cut.end = total;
     last.curve = curve;
     cut.joint = 0;
     note_change(path, path.stretches - 1);
-    look_back_where_changed(path, ring, false);
+    look_back_from(path, ring, path.stretches, {});
     return false;
+}
+
+bool append_corner(Path& path, std::span<PathPiece> ring, const Next& next, Round& round) {
+    const PathCurve& before = piece_at(ring, path.count - 1).curve;
+    const PathCurve corner = corner_between(before, next.curve, round.far);
+    const PathLimit box = box_of_corner(before, next.curve, corner.length, round.limits);
+    round.curves = {&corner, 1};
+    round.boxes = {&box, 1};
+    return append_round(path, ring, next, round);
+}
+
+bool append_transition(Path& path, std::span<PathPiece> ring, const Next& next, Round& round) {
+    const PathCurve& before = piece_at(ring, path.count - 1).curve;
+    std::array<PathCurve, most_spline_parts> curves;
+    std::array<PathLimit, most_transition_parts> boxes;
+    const std::size_t count =
+        spline_between(before.at(before.length - round.far), next.curve.at(round.far), curves);
+    if (count == 0 || count > boxes.size()) return false;
+    for (std::size_t i = 0; i < count; ++i) boxes[i] = box_of(curves[i], round.limits);
+    round.curves = {curves.data(), count};
+    round.boxes = {boxes.data(), count};
+    return append_round(path, ring, next, round);
+}
+
+/// Joins a line or an arc to the last one by a corner or a transition. False, and nothing has
+/// changed, where that cannot be.
+bool append_round(Path& path, std::span<PathPiece> ring, const Next& next, const PathJoint& joint) {
+    if (path.finished() || path.count - path.first + 2 > ring.size()) return false;
+    const PathPiece& last = piece_at(ring, path.count - 1);
+    const PathCurve& before = last.curve;
+    if (!before.is_line_or_arc() || !next.curve.is_line_or_arc() || is_smooth(before, next.curve))
+        return false;
+    const double most = std::min(joint.distance, room_of_corner(path, ring, next.curve));
+    Round round;
+    round.far = distance_within(joint.deviation, before, next.curve, most);
+    constexpr double least = 1e-9;
+    if (!(round.far > least * (before.length + next.curve.length))) return false;
+    round.limits = limits_between(last.limits, next.limits, joint.blend);
+    const bool lines = before.kind == PathCurveKind::line && next.curve.kind == PathCurveKind::line;
+    return lines ? append_corner(path, ring, next, round)
+                 : append_transition(path, ring, next, round);
 }
 
 /// The motion at a state whose position counts from the start of the path.
@@ -381,7 +409,7 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const 
     if (count > first) {
         const PathCurve& before = piece_at(ring, count - 1).curve;
         if (!is_joined(before, curve)) return PathFault::not_joined;
-        if (joint.distance > 0 && append_round(*this, ring, curve, box, limits, joint))
+        if (joint.distance > 0 && append_round(*this, ring, {curve, box, limits}, joint))
             return PathFault::none;
         if (is_smooth(before, curve)) velocity = joint.velocity;
     }

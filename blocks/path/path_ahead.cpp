@@ -64,6 +64,7 @@ bool Chain::add(const PathLeg& leg, double since) {
 std::size_t Chain::add(const PathOutlook& outlook, const PathPieces& pieces, const PathLeg& first,
                        double since, std::size_t most) {
     if (!has_room(pieces, first.end) || !add(first, since)) return 0;
+    constexpr double enough = 0.3 * most_speed_intervals;
     std::size_t legs = 1;
     for (PathLeg next; legs < most && course.end.velocity > 0 && !outlook.stretches.is_last(goal);
          ++legs) {
@@ -72,6 +73,7 @@ std::size_t Chain::add(const PathOutlook& outlook, const PathPieces& pieces, con
             !has_room(pieces, next.end) || course.count + next.plan.count > PathCourse::most_phases)
             break;
         add(next, 0);
+        if (need.intervals >= enough && is_quick()) break;
     }
     return legs;
 }
@@ -208,7 +210,7 @@ bool look_ahead(const PathOutlook& outlook, double since, PathLeg& leg, PathVain
         legs = chain.add(outlook, pieces, leg, since, legs);
         if (legs == 0 || !chain.is_curved) return false;
         if (chain.is_quick()) {
-            vain.until = chain.end + (chain.end - base);
+            vain.until = chain.end + 3 * (chain.end - base);
             return false;
         }
         PathCourse found;

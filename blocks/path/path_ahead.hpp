@@ -15,6 +15,9 @@ struct PathOutlook {
     PathLimit halt;     ///< acceleration and jerk of a halt; none: those of the pieces
 };
 
+/// A course is looked for over fewer pieces.
+inline constexpr std::uint64_t most_pieces_ahead = 56;
+
 /// Makes of a leg and those that would follow it one that is sooner, where curves leave more than
 /// boxes; `since` is how much of the leg is over [s]. False, and the leg is as it was, where there
 /// is none. What is looked for in vain is not looked for again from leg to leg.

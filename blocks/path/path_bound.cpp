@@ -87,6 +87,7 @@ PathBound bound_of_spline(const PathCurve& c, std::size_t axis,
 
 /// h = 3 t^2 - 2 t^3 times `turn`, t = s / length.
 PathBound bound_of_turn(double tangent, double turn, double length) {
+    if (turn == 0) return {tangent, 0, 0, 0, 0};
     const double square = length * length;
     return {tangent, 1.5 * turn / length, 6 * turn / square, 12 * turn / (square * length), 0};
 }
@@ -94,12 +95,12 @@ PathBound bound_of_turn(double tangent, double turn, double length) {
 }  // namespace
 
 PathBound bound_of(const PathCurve& curve, std::size_t axis) {
-    const double u = curve.u[axis], w = curve.w[axis], per = 1 / curve.radius;
+    const double u = curve.u[axis], w = curve.w[axis];
     switch (curve.kind) {
         case PathCurveKind::line:
             return {std::abs(u), 0, 0, 0, 0};
         case PathCurveKind::arc: {
-            const double m = std::hypot(u, w);
+            const double m = std::hypot(u, w), per = 1 / curve.radius;
             return {m + std::abs(curve.slope[axis]), m * per, m * per * per, m * per * per * per,
                     m * per * per * per * per};
         }

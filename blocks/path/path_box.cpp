@@ -82,16 +82,19 @@ double jerk_along_bend(double by_bend, double by_twist) {
 
 /// The box of README.md, "Corners".
 PathLimit corner_box(const AllBounded& bounds, const PathLimit& most) {
-    constexpr double for_bend = 0.5;
+    constexpr double for_bend = 0.5, no_limit = std::numeric_limits<double>::infinity();
     PathLimit box = most;
+    double square = no_limit, cube = no_limit;  ///< of the velocity
     for (const Bounded& b : bounds) {
         if (b.tangent == 0) continue;
         box.velocity = std::min(box.velocity, b.limit.velocity / b.tangent);
         if (b.bend == 0) continue;
-        box.velocity =
-            std::min({box.velocity, std::sqrt(of_acceleration * b.limit.acceleration / b.bend),
-                      Sleef_cinz_cbrtd1_u10purec(of_jerk * b.limit.jerk / b.twist)});
+        square = std::min(square, of_acceleration * b.limit.acceleration / b.bend);
+        cube = std::min(cube, of_jerk * b.limit.jerk / b.twist);
     }
+    if (square < no_limit)
+        box.velocity =
+            std::min({box.velocity, std::sqrt(square), Sleef_cinz_cbrtd1_u10purec(cube)});
     const double V = box.velocity;
     for (const Bounded& b : bounds) {
         if (b.tangent == 0) continue;

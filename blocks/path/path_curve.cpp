@@ -1,5 +1,6 @@
 #include "blocks/path/path_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,7 +33,7 @@ double product(const PathVector& a, const PathVector& b) {
 /// Scaled by the greatest part, so that no square overflows.
 double size_of(const PathVector& a) {
     double greatest = 0;
-    for (const double x : a) greatest = std::fmax(greatest, std::abs(x));
+    for (const double x : a) greatest = std::max(greatest, std::abs(x));
     if (greatest == 0 || !std::isfinite(greatest)) return greatest;
     double sum = 0;
     for (const double x : a) sum += (x / greatest) * (x / greatest);
@@ -90,14 +91,18 @@ class CornerWay {
         return {first, second};
     }
 
-    /// Over 0..t.
+    /// Over 0..t. Where the pace is the same at both ends the second half is as long as the first.
     double until(double t) const {
+        constexpr double rounding = 1e-14;
         const double start = product(u_, u_), across = product(u_, turn_);
         const double square = product(turn_, turn_);
-        return integral_until(t, [&](double at) {
+        const auto pace_at = [&](double at) {
             const double h = at * at * (3 - 2 * at), pace = start + h * (2 * across + h * square);
             return pace > 0 ? std::sqrt(pace) : 0;
-        });
+        };
+        if (t == 1 && std::abs(2 * across + square) <= rounding * start)
+            return 2 * integral_until<4>(0.5, pace_at);
+        return integral_until(t, pace_at);
     }
 
   private:
@@ -126,6 +131,10 @@ double rounding_of(double radius, double rounding) {
 PathVector place_on(PathCurve curve, double s) {
     curve.length = 2 * s;
     return curve.at(s).position;
+}
+
+double within_length(const PathCurve& curve, double s) {
+    return s > 0 ? std::min(s, curve.length) : 0;
 }
 
 /// Between the places where its derivative changes its sign, of 64.
@@ -173,7 +182,7 @@ PathPoint point_of_spline(const PathCurve& c, double s) {
 
 PathPoint PathCurve::at(double s) const {
     PathPoint out;
-    s = std::fmin(std::fmax(s, 0), length);
+    s = within_length(*this, s);
     if (kind == PathCurveKind::spline) {
         out = point_of_spline(*this, s);
     } else if (kind == PathCurveKind::line) {
@@ -217,7 +226,7 @@ bool PathCurve::is_in_space() const {
 }
 
 PathCurve::Way PathCurve::way_at(double s) const {
-    s = std::fmin(std::fmax(s, 0), length);
+    s = within_length(*this, s);
     if (kind != PathCurveKind::corner) return is_in_space() ? Way{s, 1, 0, 0} : Way{};
     const CornerWay way(*this);
     const double t = s / length;

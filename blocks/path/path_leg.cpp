@@ -39,7 +39,7 @@ double reached_velocity(const MotionState& from, double room, double wanted, con
     const double a = from.acceleration;
     double reached = std::max(0.0, from.velocity + a * std::abs(a) / (2 * box.jerk));
     double missed = wanted;
-    if (!(way_to(from, reached, box) <= room)) return -1;
+    if (a != 0 && !(way_to(from, reached, box) <= room)) return -1;
     if (a == 0) {
         SevenSegmentPlan direct;
         const double V = std::max(from.velocity, wanted);
@@ -59,12 +59,14 @@ double reached_velocity(const MotionState& from, double room, double wanted, con
     return reached;
 }
 
+constexpr double box_rounding = 1e-10;
+
 /// A part of a phase within one stretch.
 bool is_in_box(const MotionState& start, double duration, const PathLimit& box) {
-    constexpr double rounding = 1e-10;
     const MotionState end = start.after(duration);
-    const double A = box.acceleration * (1 + rounding), V = box.velocity * (1 + rounding);
-    if (std::abs(start.jerk) > box.jerk * (1 + rounding) || std::abs(start.acceleration) > A ||
+    const double V = box.velocity * (1 + box_rounding);
+    const double A = box.acceleration * (1 + box_rounding);
+    if (std::abs(start.jerk) > box.jerk * (1 + box_rounding) || std::abs(start.acceleration) > A ||
         std::abs(end.acceleration) > A)
         return false;
     double least = std::min(start.velocity, end.velocity);
@@ -74,8 +76,74 @@ bool is_in_box(const MotionState& start, double duration, const PathLimit& box) 
         least = std::min(least, turn);
         most = std::max(most, turn);
     }
-    return most <= V && least >= -rounding * box.velocity;
+    return most <= V && least >= -box_rounding * box.velocity;
 }
+
+/// A phase within the boxes of the stretches that it lies on.
+class PhaseInBoxes {
+  public:
+    explicit PhaseInBoxes(const MotionPlan::Phase& phase)
+        : start(phase.start), end(start.after(phase.duration)), duration(phase.duration) {
+        acceleration = std::max(std::abs(start.acceleration), std::abs(end.acceleration));
+        least = std::min(start.velocity, end.velocity);
+        most = std::max(start.velocity, end.velocity);
+        if (!(start.acceleration * end.acceleration < 0)) return;
+        turns = true;
+        const double turn = start.after(-start.acceleration / start.jerk).velocity;
+        least = std::min(least, turn);
+        most = std::max(most, turn);
+    }
+
+    double end_position() const { return end.position; }
+
+    /// The part from one place to another, which may begin before it.
+    bool keeps(double from, double to, const PathLimit& box) const {
+        return surely_keeps(from, to, box) || exactly_keeps(from, to, box);
+    }
+
+  private:
+    MotionState start, end;
+    double duration, acceleration, least, most;
+    bool turns = false;
+
+    /// Where the acceleration does not change its sign the velocity is greatest at that end of the
+    /// part that is further from the slow end of the phase.
+    bool surely_keeps(double from, double to, const PathLimit& box) const {
+        if (std::abs(start.jerk) > box.jerk || acceleration > box.acceleration || least < 0)
+            return false;
+        if (most <= box.velocity) return true;
+        if (turns) return false;
+        const bool rises = start.velocity < end.velocity;
+        const MotionState& slow = rises ? start : end;
+        const double jerk = rises ? start.jerk : -start.jerk;
+        const double a = rises ? slow.acceleration : -slow.acceleration;
+        const double way = rises ? to - start.position : end.position - from;
+        return velocity_at(slow.velocity, a, jerk, std::max(way, 0.0)) <= box.velocity;
+    }
+
+    /// No less than it is: the way is convex in the time, so that from a time that is too long
+    /// each of Newton's steps leads to another.
+    double velocity_at(double v, double a, double jerk, double way) const {
+        constexpr int steps = 3;
+        double t = std::min(way / v, duration);
+        for (int step = 0; step < steps; ++step) {
+            const double square = 0.5 * jerk * t * t;
+            t = (way + t * (0.5 * a * t + (2.0 / 3) * square)) / (v + a * t + square);
+        }
+        return v + t * (a + 0.5 * jerk * t);
+    }
+
+    bool exactly_keeps(double from, double to, const PathLimit& box) const {
+        const double before = time_at(from);
+        const double after = to < end.position ? time_at(to) : duration;
+        return is_in_box(start.after(before), after - before, box);
+    }
+
+    double time_at(double place) const {
+        const double way = place - start.position;
+        return way > 0 ? time_at_way(start, duration, way) : 0;
+    }
+};
 
 /// Whatever it was planned with: each of its states is in the box of the stretch that it lies in,
 /// and it passes no stop.
@@ -84,33 +152,60 @@ bool keeps_boxes(ConstPathStretches stretches, const Departure& departure, std::
     if (stretches.passes_stop(goal)) return false;
     std::uint64_t k = stretches.first;
     for (std::size_t i = 0; i < plan.count; ++i) {
-        MotionState s = plan.phases[i].start;
-        double left = plan.phases[i].duration;
-        const double end = s.after(left).position;
-        for (; k < goal && departure.base + end > stretches[k].end; ++k) {
-            const double way = stretches[k].end - departure.base - s.position;
-            const double t = way > 0 ? time_at_way(s, left, way) : 0;
-            if (!is_in_box(s, t, stretches[k].box)) return false;
-            s = s.after(t);
-            left -= t;
+        const PhaseInBoxes phase(plan.phases[i]);
+        double from = plan.phases[i].start.position;
+        for (; k < goal && departure.base + phase.end_position() > stretches[k].end; ++k) {
+            const double to = stretches[k].end - departure.base;
+            if (!phase.keeps(from, to, stretches[k].box)) return false;
+            from = to;
         }
-        if (!is_in_box(s, left, stretches[k].box)) return false;
+        if (!phase.keeps(from, phase.end_position(), stretches[k].box)) return false;
     }
     return true;
+}
+
+/// It goes on with the velocity that it ends with.
+bool is_cruise(const MotionState& from, double velocity, const Goal& to) {
+    return from.acceleration == 0 && from.velocity == velocity && to.velocity == velocity;
+}
+
+void take_cruise(const Goal& to, MotionPlan& out) {
+    out.count = 1;
+    out.duration = to.position / to.velocity;
+    out.missed = 0;
+    out.haste = MotionPlan::spread / out.duration;
+    out.end = {to.position, to.velocity, 0, 0};
+    out.phases[0] = {0, out.duration, {0, to.velocity, 0, 0}};
+}
+
+/// A copy without the phases that are not there.
+void take_plan(const MotionPlan& from, MotionPlan& out) {
+    out.count = from.count;
+    out.duration = from.duration;
+    out.missed = from.missed;
+    out.haste = from.haste;
+    out.end = from.end;
+    std::copy_n(from.phases.begin(), from.count, out.phases.begin());
 }
 
 /// In the least of the boxes but with this velocity.
 bool plan_with(ConstPathStretches stretches, const Departure& departure, const Span& span,
                double velocity, const Goal& to, MotionPlan& out) {
+    if (!(velocity > 0)) return false;
+    if (is_cruise(departure.from, velocity, to)) {
+        take_cruise(to, out);
+        return keeps_boxes(stretches, departure, span.goal, out);
+    }
     MotionLimits limits;
-    return velocity > 0 &&
-           limits.set(velocity, -velocity, span.least.acceleration, span.least.acceleration,
+    return limits.set(velocity, -velocity, span.least.acceleration, span.least.acceleration,
                       span.least.jerk) == PlanResult::ok &&
            plan(limits, departure.from, to, out, {Entry::gentle, 1024}) == PlanResult::ok &&
            keeps_boxes(stretches, departure, span.goal, out);
 }
 
-/// To a place in the last stretch of the span, and a velocity there that is `exit` at most.
+/// To a place in the last stretch of the span, and a velocity there that is `exit` at most. Where
+/// another one than is wanted is reached it is by the direct ramp, with whatever V; where the
+/// motion ends as fast as the last box allows it is nowhere faster in it.
 bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span, double end,
              double exit, MotionPlan& out) {
     const auto& [from, base, factor] = departure;
@@ -121,12 +216,15 @@ bool plan_to(ConstPathStretches stretches, const Departure& departure, const Spa
     if (velocity < 0 || velocity > exit) return false;
     const double now =
         from.velocity + from.acceleration * std::abs(from.acceleration) / (2 * span.least.jerk);
+    const double box = stretches[span.goal].box.velocity,
+                 top = velocity < box ? infinite : velocity;
     double before = -1;
     for (const double V :
          {factor * span.fastest, factor * span.least.velocity, now, span.fastest}) {
-        const double most = std::max(V, velocity);
+        const double most = std::max(std::min(V, top), velocity);
         if (most != before && plan_with(stretches, departure, span, most, {room, velocity}, out))
             return true;
+        if (velocity != wanted) return false;
         before = most;
     }
     return false;
@@ -155,16 +253,18 @@ bool plan_halt(ConstPathStretches stretches, const Departure& departure, Span sp
     }
 }
 
-/// The motion that would follow one to a joint, to where the stretch behind it brakes [s].
+/// The motion that would follow one to a joint, to where the stretch behind it brakes; or `enough`
+/// where it lasts longer [s].
 double duration_of_next(ConstPathStretches stretches, std::uint64_t joint, double velocity,
-                        double factor) {
+                        double factor, double enough) {
     const PathStretch& next = stretches[joint + 1];
     const PathStretch& goal = stretches[next.target];
     const double exit = std::min(stretches.exit(next.target), factor * goal.joint);
     const double V = std::max({factor * next.box.velocity, velocity, exit});
+    const double way = goal.end - next.begin;
+    if (way >= enough * V) return enough;
     SevenSegmentPlan ramp;
-    const SevenSegment problem{
-        velocity, exit, V, next.span.acceleration, next.span.jerk, goal.end - next.begin};
+    const SevenSegment problem{velocity, exit, V, next.span.acceleration, next.span.jerk, way};
     return plan(problem, ramp) == PlanResult::ok ? ramp.duration : infinite;
 }
 
@@ -179,15 +279,16 @@ bool ends_well(ConstPathStretches stretches, const Span& span, const MotionPlan&
 /// Further and further while that is sooner than to come to acceleration 0 at the joint.
 void extend(ConstPathStretches stretches, const Departure& departure, Span& span,
             MotionPlan& best) {
-    MotionPlan further;
     while (!stretches.is_last(span.goal) && !ends_well(stretches, span, best, departure.factor)) {
         Span longer = span;
         longer.extend(stretches, stretches[span.goal + 1].target);
+        MotionPlan further;
         if (!plan_to(stretches, departure, longer, further)) return;
-        const double next = duration_of_next(stretches, span.goal, best.end.velocity,
-                                             std::max(departure.factor, 0x1p-20));
-        if (further.duration > best.duration + next) return;
-        best = further;
+        const double more = further.duration - best.duration;
+        if (more > duration_of_next(stretches, span.goal, best.end.velocity,
+                                    std::max(departure.factor, 0x1p-20), more))
+            return;
+        take_plan(further, best);
         span = longer;
     }
 }
@@ -215,12 +316,17 @@ double way_to(const MotionState& from, double velocity, const PathLimit& box) {
 }
 
 void PathLeg::stand(double place, std::uint64_t number) {
-    take({}, place, place, number);
+    plan.count = 0;
+    plan.duration = plan.missed = plan.haste = 0;
+    plan.end = {};
+    course.clear();
+    base = end = place;
+    goal = number;
     ripe = 0;
 }
 
 void PathLeg::take(const MotionPlan& motion, double from, double to, std::uint64_t stretch) {
-    plan = motion;
+    take_plan(motion, plan);
     course.clear();
     base = from;
     end = to;

@@ -147,11 +147,12 @@ bool add_piece(const PathPieces& pieces, std::uint64_t number, const PathCourse&
 
 MeshNeed mesh_need(const PathPiece& piece) {
     constexpr double angle = 0.5;  ///< of an arc [rad]
+    if (piece.curve.kind == PathCurveKind::line) return {2, 5};
     double axes = 0;
     for (const PathBound& axis : piece.bounds) axes += axis.tangent > 0 ? 1 : 0;
     switch (piece.curve.kind) {
         case PathCurveKind::line:
-            return {2, 5};
+            break;
         case PathCurveKind::arc:
             return {2 + piece.curve.length / piece.curve.radius / angle, 5 + 3 * axes};
         case PathCurveKind::corner:

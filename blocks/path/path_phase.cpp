@@ -58,6 +58,7 @@ double time_at_way(const MotionState& start, double duration, double way) {
     for (int step = 0; step < 64 && hi > lo; ++step) {
         const MotionState s = from.after(t);
         const double missing = way - s.position;
+        if (std::abs(missing) <= 1e-15 * way) break;
         (missing > 0 ? lo : hi) = t;
         double next = s.velocity > 0 ? t + missing / s.velocity : lo - 1;
         if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);

@@ -74,12 +74,15 @@ double greatest_entry(const PathStretch& s, double exit) {
 void find_entry(PathStretches stretches, std::uint64_t k) {
     PathStretch& s = stretches[k];
     const double V = s.box.velocity, exit = std::min(stretches.exit(k), V);
-    BackwardRamp ramp;
-    s.entry = 0;
     s.target = k;
     s.span = s.box;
     s.settled = s.ramp_end = s.end;
-    s.ramp_exit = 0;
+    if (exit == V) {
+        s.entry = s.ramp_exit = V;
+        return;
+    }
+    BackwardRamp ramp;
+    s.entry = s.ramp_exit = 0;
     if (!stretches.is_last(k) && !stretches.is_bound_by_joint(k)) {
         const PathStretch& next = stretches[k + 1];
         const PathLimit span = least_of(s.box, next.span);

@@ -131,6 +131,44 @@ TEST_CASE("path: a corner is passed in motion, also when it is put in under way"
     }
 }
 
+TEST_CASE(
+    "path: pieces far ahead are planned with when they are needed, and change nothing before") {
+    constexpr int pieces = 1200;
+    const PathLimits limits = wide_limits({100, 1000, 1e4});
+    const auto appended = [&](std::size_t ahead, double& lasts) {
+        std::vector<PathPiece> ring(ahead);
+        Path path;
+        PathVector at{};
+        std::uint64_t times = 0, known = 0;
+        for (int k = 0; k < pieces; ++k) {
+            PathVector to = at;
+            const double direction = std::sin(1e-2 * k) + 0.5 * std::sin(3.7e-2 * k);
+            to[0] += 0.1 * std::cos(direction);
+            to[1] += 0.1 * std::sin(direction);
+            PathCurve line;
+            while (path.count - path.first + 2 > ring.size())
+                lasts += path.advance_to(ring, Path::any_time, path.first + 1);
+            REQUIRE(line_to(at, to, line) == PathFault::none);
+            REQUIRE(path.append(ring, line, limits, {0, PathJoint::any, PathBlend::low, 0.01}) ==
+                    PathFault::none);
+            CHECK(path.sure <= path.known);
+            CHECK(path.known <= path.stretches);
+            times += path.known != known ? 1 : 0;
+            known = path.known;
+            at = to;
+        }
+        while (!path.finished()) lasts += path.advance_to(ring, Path::any_time, Path::to_end);
+        CHECK(path.now(ring).position == at);
+        return times;
+    };
+    double at_once = 0, far = 0, near = 0;
+    CHECK(appended(2 * pieces + 2, at_once) == 0);
+    CHECK(appended(1000, far) < 10);
+    CHECK(appended(80, near) > 100);
+    CHECK(far == Approx(at_once).epsilon(1e-9));
+    CHECK(near == Approx(at_once).epsilon(0.02));
+}
+
 TEST_CASE("path: a corner that is put in before the path begins is run along") {
     std::vector<PathPiece> ring(8);
     Path path;
