@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::int64_t checkpoint_layout = 7;  // of the state
+constexpr std::int64_t checkpoint_layout = 8;  // of the state
 constexpr std::size_t longest_head = 1 << 16;  // bytes
 
 /// What is wrong with a checkpoint; empty when nothing is.

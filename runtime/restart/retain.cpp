@@ -31,7 +31,7 @@ using Bytes = std::vector<std::byte>;
 constexpr YamlLimits retain_limits{.bytes = 256 << 20};
 constexpr std::string_view help = "a cold restart (--restart cold) begins with the initial values";
 
-constexpr std::int64_t retain_layout = 7;  // of the blocks
+constexpr std::int64_t retain_layout = 8;  // of the blocks
 constexpr std::string_view check_begin = "\"check\": \"", no_check = "0000000000000000";
 
 /// Where the digits of the file's own check stand; npos when there are none.

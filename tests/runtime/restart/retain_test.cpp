@@ -226,7 +226,7 @@ TEST_CASE("a damaged file alone, and one of an earlier layout, is refused", "[re
     std::string flipped = text;
     flipped[text.find("\"delay\"") + 1] = 'D';
     CHECK(refused(flipped).find("its check does not fit") != std::string::npos);
-    const std::string layout = "\"lineshaft_retain\": 7";
+    const std::string layout = "\"lineshaft_retain\": 8";
     text.replace(text.find(layout), layout.size(), "\"lineshaft_retain\": 1");
     CHECK(refused(with_check(text)).find("of an earlier lineshaft") != std::string::npos);
     CHECK(refused("{}").find("this is not a file of retained values") != std::string::npos);
