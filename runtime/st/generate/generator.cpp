@@ -146,9 +146,11 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
         if (routine->plain_ring != 0) lay_out_ring(w, routine->plain_ring);
         write(w, *routine);
     }
+    if (!w.out.empty()) return {};
     finish_dispatch(w);
     for (const Global& global : w.checked.globals)
         if (is_list(global)) lay_out_members(w, *global.type, true);
+    if (!w.out.empty()) return {};
     finish_late(w);
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);

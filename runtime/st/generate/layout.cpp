@@ -6,6 +6,7 @@
 
 #include "runtime/source/codes.hpp"
 #include "runtime/st/generate/places.hpp"
+#include "runtime/st/types/elementary.hpp"
 
 namespace lineshaft::st {
 
@@ -13,11 +14,18 @@ namespace {
 
 constexpr std::uint64_t most_slots = 1U << 26;
 
-void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view name) {
+/// Nothing is put into images from then on: not all of it has a place.
+void check_size(Writing& w, std::uint64_t slots, Place place, std::string_view what) {
     if (slots <= most_slots) return;
-    if (!place.source) return;
-    w.out.add(code::too_deep_or_large, place.mark(),
-              fmt::format("'{}' takes more than 512 MB", name), "make its arrays smaller");
+    w.is_too_large = true;
+    if (!place.source) place = w.place;
+    w.out.add(code::too_deep_or_large, place.mark(), fmt::format("{} more than 512 MB", what),
+              "make arrays smaller");
+}
+
+/// A variable, or what stands before it as well.
+std::string takes(std::string_view name, bool alone) {
+    return fmt::format("'{}' {}", name, alone ? "takes" : "and what stands before it take");
 }
 
 /// Its address, what a text of any length holds, and a reference where something refers to it.
@@ -39,7 +47,7 @@ void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condi
         w.place = variable.name.place;
         variable.slot = at;
         const std::uint64_t slots = slots_in_frame(w, variable);
-        check_size(w, at + slots, variable.name.place, variable.text);
+        check_size(w, at + slots, variable.name.place, takes(variable.text, slots > most_slots));
         if (at + slots > most_slots) return;
         at += static_cast<std::uint32_t>(slots);
     }
@@ -62,6 +70,11 @@ bool has_block(const Type& type) {
 
 bool waits_for_blocks(const Type& type) {
     return type.kind == Kind::structure && type.slots == 0 && has_block(type);
+}
+
+void fill_all(Writing& w, Writing::Image& image, const Routine& routine) {
+    if (w.is_too_large) return;
+    for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
 }
 
 /// A slot that says that the routine runs.
@@ -113,8 +126,9 @@ void lay_out_members(Writing& w, const Type& list, bool with_blocks) {
     for (Variable* member : list.members) {
         if (has_block(*member->type) != with_blocks) continue;
         member->slot = static_cast<std::uint32_t>(std::min(slots, most_slots));
-        slots += slots_of(w, *member->type);
-        check_size(w, slots, member->name.place, member->text);
+        const std::uint64_t own = slots_of(w, *member->type);
+        slots += own;
+        check_size(w, slots, member->name.place, takes(member->text, own > most_slots));
     }
     const_cast<Type&>(list).slots = static_cast<std::uint32_t>(std::min(slots, most_slots));
 }
@@ -146,7 +160,7 @@ std::uint32_t slots_of(Writing& w, const Type& type) {
         for (const Variable* member : type.members) slots_of(w, *member->type);
         slots = (bytes_of(type) + 7) / 8;
     }
-    if (slots > most_slots) check_size(w, slots, w.place, type.name);
+    if (slots > most_slots) check_size(w, slots, w.place, describe(type) + " takes");
     const_cast<Type&>(type).slots = static_cast<std::uint32_t>(std::min(slots, most_slots));
     return type.slots;
 }
@@ -166,8 +180,8 @@ void lay_out(Writing& w, Routine& block) {
     image.resize(at, 0);
     if (w.code.has_kinds)
         image[w.code.kind_slot()] = w.kinds.emplace(&block, w.kinds.size() + 1).first->second;
-    for (const Variable& variable : block.variables) fill(w, image, variable.slot, variable);
-    fill_assigned(w, image, block.initials);
+    fill_all(w, image, block);
+    if (!w.is_too_large) fill_assigned(w, image, block.initials);
 }
 
 void lay_out_call(Writing& w, Routine& routine) {
@@ -192,7 +206,7 @@ void lay_out_call(Writing& w, Routine& routine) {
     routine.variables_end = at;
     Writing::Image& image = block ? w.images[block->type] : w.function_images[&routine];
     image.resize(at, 0);
-    for (const Variable& variable : routine.variables) fill(w, image, variable.slot, variable);
+    fill_all(w, image, routine);
 }
 
 void lay_out_ring(Writing& w, int ring) {

@@ -81,6 +81,7 @@ struct Writing {
     Code code = {};
     std::vector<Assertion> assertions = {};
     bool has_tests = false;
+    bool is_too_large = false;  ///< what is laid out, which was told: not all of it has a place
     std::unordered_map<const Type*, Image> images = {};
     std::unordered_map<const Routine*, Image> function_images = {};
     std::unordered_map<const Routine*, std::uint32_t> numbers = {};
