@@ -418,6 +418,15 @@ Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect) {
     return wrapped(integer_type(32, dialect.times_have_signs), nanoseconds / ms) * ms;
 }
 
+bool is_cut_to_ms(const Expression& target, const Type& from) {
+    const Type& to = *target.type;
+    const bool is_of_standard = target.kind == E::member && target.operands[0]->type &&
+                                target.operands[0]->type->kind == Kind::standard;
+    return from.kind == to.kind && from.is_time() && from.counts_ns && !to.counts_ns &&
+           target.place.dialect().times_have_signs && !target.place.source->is_prelude() &&
+           !is_of_standard;
+}
+
 const Type* convert(Checking& c, Expression*& e, const Type& to) {
     if (is_constant(*e) && fold_conversion(c, e, to)) return &to;
     return become_converted(c, e, to);

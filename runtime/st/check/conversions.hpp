@@ -50,6 +50,9 @@ bool may_become(Checking& c, const Expression& e, const Type& to);
 
 /// What is kept of a TIME that is whole ms in 32 bits, in SCL with a sign.
 Wide in_whole_ms(Wide nanoseconds, const Dialect& dialect);
+/// An LTIME that is assigned to a TIME of SCL, and the like: what is below a ms is not kept, but by
+/// blocks of the standard.
+bool is_cut_to_ms(const Expression& target, const Type& from);
 
 /// `16#FF` has that of the bit string that is wanted.
 void take_width(Checking& c, Expression*& e, const Type* expected);

@@ -487,7 +487,8 @@ void check_assignment(Checking& c, Statement*& s) {
         return void(c.fail(code::cannot_be_assigned, s->place,
                            "an instance is not assigned as a whole",
                            "assign its inputs one by one"));
-    coerce(c, s->value, *type);
+    if (coerce(c, s->value, *type) && is_cut_to_ms(*s->target, *s->value->type))
+        convert(c, s->value, *type);
 }
 
 }  // namespace lineshaft::st

@@ -183,13 +183,14 @@ bool is_counted(const Expression& e) {
            (number.is_integer() || number.is_bits());
 }
 
-/// Made of something else in CODESYS and SCL, whose TIME and TOD are whole ms, in CODESYS also DT
-/// whole seconds, and DATE whole days.
+/// Made of something else in CODESYS and SCL, whose TIME and TOD are whole ms, in SCL also DT, in
+/// CODESYS that whole seconds, and DATE whole days.
 bool is_whole(const Expression& e) {
     const Type &from = *e.operands[0]->type, &to = e.type->plain();
     const Dialect& dialect = e.place.dialect();
-    const bool is_kind =
-        to.kind == Kind::time || to.kind == Kind::clock || dialect.dates_count_seconds;
+    const bool is_moment = to.kind == Kind::moment && from.kind == Kind::moment,
+               is_kind = to.kind == Kind::time || to.kind == Kind::clock || is_moment ||
+                         dialect.dates_count_seconds;
     return dialect.times_count_ms && !e.place.source->is_prelude() && to.is_time() &&
            !to.counts_ns && is_kind &&
            (!from.is_time() || from.counts_ns ||
@@ -200,7 +201,8 @@ bool is_whole(const Expression& e) {
 Slot in_whole_units(Writing& w, Slot slot, const Type& from, const Type& to, const Place& place,
                     Slot wanted) {
     const bool has_sign = place.dialect().times_have_signs;
-    const Slot unit = w.constant_slot(unit_of(to));
+    const bool is_moment_of_s7 = has_sign && to.kind == Kind::moment;
+    const Slot unit = w.constant_slot(is_moment_of_s7 ? of_ms : unit_of(to));
     const bool is_unsigned = from.is_unsigned_64() && from.is_time();
     Slot count = w.emit(is_unsigned ? Op::div_ulint : Op::div_lint, none, slot, unit);
     if (to.kind == Kind::time || !has_sign)
