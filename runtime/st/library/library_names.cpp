@@ -161,7 +161,8 @@ const LibraryNames::Index& index_of(const Catalog& catalog) {
 NameSet declared_names(const Tree& tree) {
     NameSet names;
     for (const TypeDeclaration& type : tree.types) names.insert(type.name.text);
-    for (const Pou* unit : tree.units) names.insert(unit->name.text);
+    for (const Pou* unit : tree.units)  // `"S_PULSE"` of SCL is not S_PULSE
+        if (!is_users_name(unit->name)) names.insert(unit->name.text);
     for (const auto& [name, is_name] : tree.lost) names.insert(name);
     for (const TypeText& type : tree.type_texts)
         if (type.kind == TypeText::Kind::enumeration && !type.is_qualified_only)
@@ -223,15 +224,14 @@ void LibraryNames::note_libraries(const Tokens& tokens) {
 }
 
 void LibraryNames::note(const Token& name) {
-    const bool is_plain = !name.quoted && !name.local && name.place.source;
-    if (!is_plain) return;
+    if (name.quoted || name.local || !name.place.source) return;
     if (&name.place.dialect() == &scl || reading_ == siemens_motion) {
-        const auto own = index_.of_siemens.find(name.text);
-        if (own != index_.of_siemens.end()) of_siemens_.insert(own->first);
+        if (const auto own = index_.of_siemens.find(name.text); own != index_.of_siemens.end())
+            of_siemens_.insert(own->first);
         return;
     }
-    const auto it = index_.by_name.find(name.text);
     const bool is_twincat = &name.place.dialect() == &twincat;
+    const auto it = index_.by_name.find(name.text);
     if (it == index_.by_name.end() || (is_of_twincat_alone(it->first) && !is_twincat)) return;
     const bool is_plcopens = it->second.front()->library == plcopen_enumerations;
     const bool may_be_plcopens = reading_.empty() && !name.place.dialect().is_loose;
