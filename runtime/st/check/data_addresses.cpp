@@ -93,6 +93,7 @@ struct AnyPointer {
 /// `DB102.DBX124.0 WORD 2` and `M 100.0 BYTE 4`, in capitals; empty: it is no such.
 std::optional<AnyPointer> read_any_pointer(std::string_view text) {
     AnyPointer read;
+    skip_spaces(text);
     if (text.starts_with("DB")) {
         text.remove_prefix(2);
         read.block = take_digits(text);

@@ -177,11 +177,13 @@ void read_number(TextCursor& in) {
     in.add(real ? Word::real : Word::integer);
 }
 
-/// `P#DB102.DBX124.0 WORD 2` and `P#M 100.0 BYTE 4` of Siemens, at the sign: one address.
+/// `P#DB102.DBX124.0 WORD 2`, `P#M 100.0 BYTE 4` and `P# I2.0 BYTE 4` of Siemens, at the sign: one
+/// address.
 void read_any_pointer(TextCursor& in) {
     const auto is_part = [](char c) { return is_letter(c) || is_digit(c) || c == '.'; };
     const auto skip_spaces = [&] { in.skip_while([](char c) { return c == ' '; }); };
     ++in.at;
+    skip_spaces();
     in.skip_while(is_part);
     if (is_letter(in.text[in.at - 1]) && in.peek() == ' ') skip_spaces(), in.skip_while(is_part);
     const std::size_t end_of_place = in.at;
