@@ -166,6 +166,11 @@ class SimaticObject {
     /// It has members of its own, or is an instance; values of their parts are assigned.
     void add_data_block(pugi::xml_node object) {
         kind_ = Kind::data_block;
+        if (const auto number = attributes(object).child("Number")) {
+            write("{S7_BlockNumber := \"", number);
+            file_.copy(text_, number);
+            write("\"}\n", number);
+        }
         write("DATA_BLOCK ", object);
         write_name(object);
         write("\n", object);

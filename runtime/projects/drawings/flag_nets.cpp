@@ -32,6 +32,13 @@ std::string name_of(std::string_view part, bool is_negated) {
         {"Rs", "S_RS"},
         {"Sr", "S_SR"},
         {"Jump", "JumpCoil"},
+        {"JumpNot", "I_JumpCoil"},
+        {"CoilTON", "TON_Coil"},
+        {"CoilTOF", "TOF_Coil"},
+        {"CoilTP", "TP_Coil"},
+        {"CoilTONR", "TONR_Coil"},
+        {"SBitfield", "SET_BF"},
+        {"RBitfield", "RESET_BF"},
         {"Calc", "Calculate"},
         {"MoveBlockI", "MOVE_BLK"},
         {"MoveBlockU", "UMOVE_BLK"},
@@ -44,6 +51,11 @@ std::string name_of(std::string_view part, bool is_negated) {
 bool is_s5_timer(std::string_view part) {
     return is_any(
         part, {"S_PULSE", "S_PEXT", "S_ODT", "S_ODTS", "S_OFFDT", "Sp", "Se", "Sd", "Ss", "Sf"});
+}
+
+/// `SCoil`, `CoilTON`, `ReturnTrue`, in small letters.
+bool is_coil(std::string_view part) {
+    return part.ends_with("coil") || part.starts_with("coil") || part.starts_with("return");
 }
 
 /// Where power comes in: the first of them that is connected.
@@ -59,8 +71,8 @@ std::vector<std::string_view> power_pins(std::string_view part) {
     if (is_any(part, {"PContact", "NContact"})) return {"pre"};
     if (is_any(part, {"SET_BF", "RESET_BF"})) return {"en", "in"};
     const std::string small = lower(part);
-    if (small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||
-        is_any(part, {"Not", "Jump", "Return"}))
+    if (small.ends_with("contact") || small.ends_with("box") || is_coil(small) ||
+        is_any(part, {"Not", "Jump", "JumpNot"}))
         return {"in"};
     return {"en", "pre"};
 }
@@ -85,7 +97,7 @@ bool is_power(std::string_view part, std::string_view pin) {
         return same_name(pin, "Q");
     if (same_name(part, "CTUD")) return same_name(pin, "QU");
     return same_name(pin, "out") &&
-           (small.ends_with("contact") || small.ends_with("coil") || small.ends_with("box") ||
+           (small.ends_with("contact") || small.ends_with("box") || is_coil(small) ||
             is_any(part, {"Not", "A", "O", "X", "Eq", "Ne", "Gt", "Lt", "Ge", "Le", "InRange",
                           "OutRange", "OK", "NotOk", "SET_BF", "RESET_BF"}));
 }

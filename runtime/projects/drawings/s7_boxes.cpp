@@ -38,11 +38,6 @@ Value counted(Running& r, std::string_view sign) {
     return power;
 }
 
-/// `MN` and `MX` of an edition are `min` and `max` of others.
-Value operand_of(const Running& r, std::string_view pin, std::string_view other) {
-    return r.operand(r.it.find(pin) ? pin : other);
-}
-
 /// `min`, `value`, `max`, of one type: a whole number is given as it is.
 Value scaled(Running& r, std::string_view function) {
     return result_of(
@@ -103,6 +98,10 @@ bool writes_to_out(std::string_view name) {
 }  // namespace
 
 Value move(Running& r) {
+    return result(r, r.call("MOVE", {{"", r.operand("in")}}));
+}
+
+Value text_move(Running& r) {
     return result(r, r.operand("in"));
 }
 
@@ -154,10 +153,9 @@ Value conversion(Running& r) {
 }
 
 Value limit(Running& r) {
-    return result_of(r, "LIMIT",
-                     {{"MN", operand_of(r, "mn", "min")},
-                      {"IN", r.operand("in")},
-                      {"MX", operand_of(r, "mx", "max")}});
+    return result_of(
+        r, "LIMIT",
+        {{"MN", r.operand("mn", "min")}, {"IN", r.operand("in")}, {"MX", r.operand("mx", "max")}});
 }
 
 /// SCALE of the S7-300 has other pins.
@@ -272,10 +270,10 @@ Value timer(Running& r) {
 
 namespace {
 
-/// `FOR _bit1 := 0 TO count - 1 DO list[3 + _bit1] := TRUE; END_FOR`
+/// `FOR _bit1 := 0 TO count - 1 DO list[3 + _bit1] := TRUE; END_FOR`, and none behind the last
 Value bits_assigned(Running& r, std::string_view value) {
-    const Value power = r.enable(), first = operand_of(r, "s_bit", "operand"),
-                count = r.operand("count");
+    const Value power = r.enable(), first = r.operand("s_bit", "operand"),
+                count = r.operand("count", "n");
     const std::string_view text = first.text.text();
     const std::size_t index = text.rfind('[');
     if (!text.ends_with("]") || text.find(',', index) != text.npos) {
@@ -287,10 +285,12 @@ Value bits_assigned(Running& r, std::string_view value) {
         return power;
     }
     const std::string bit = r.variables.make("_bit", "DINT");
+    const std::string_view list = text.substr(0, index),
+                           place = text.substr(index + 1, text.size() - index - 2);
     r.open(power);
-    r.write(fmt::format("FOR {} := 0 TO ", bit));
+    r.write(fmt::format("FOR {} := 0 TO MIN(", bit));
     r.to.append(count.text);
-    r.write(" - 1 DO\n");
+    r.write(fmt::format(" - 1, UPPER_BOUND({}, 1) - ({})) DO\n", list, place));
     r.write(fmt::format("{} + {}] := {};\n", text.substr(0, text.size() - 1), bit, value));
     r.write("END_FOR\n");
     r.close(power);

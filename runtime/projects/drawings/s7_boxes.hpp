@@ -7,6 +7,7 @@ namespace lineshaft::projects::s7 {
 // Boxes: what each does, and the power behind it.
 
 Value move(Running& r);
+Value text_move(Running& r);
 Value arithmetic(Running& r);
 Value negation(Running& r);
 Value inversion(Running& r);

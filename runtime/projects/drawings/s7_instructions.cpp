@@ -165,11 +165,11 @@ Value falling_coil(Running& r) {
 /// `TOn_Coil(timer := #t, pt := T#1s)`
 Value timer_coil(Running& r) {
     const Value power = r.enable();
-    r.to.append(r.operand("timer").text);
+    r.to.append(r.operand("timer", "operand").text);
     r.write(fmt::format(".{}(IN := ", r.it.name.substr(0, r.it.name.find('_'))));
     r.to.append(power.text);
     r.write(", PT := ");
-    r.to.append(r.operand("pt").text);
+    r.to.append(r.operand("pt", "value").text);
     r.write(");\n");
     return power;
 }
@@ -177,7 +177,7 @@ Value timer_coil(Running& r) {
 /// `given` is nothing, or the time that it gets.
 Value timer_command(Running& r, std::string_view function, const Value& given) {
     const Value power = r.enable();
-    const Value timer = r.it.find("timer") ? r.operand("timer") : r.operand("operand");
+    const Value timer = r.operand("timer", "operand");
     r.open(power);
     r.to.append(r.call(function, {{"PT", given}, {"TIMER", timer}}).text);
     r.write(";\n");
@@ -194,7 +194,7 @@ Value timer_preset(Running& r) {
 Value jump(Running& r, const Value& when) {
     r.open(when);
     r.write("GOTO ");
-    r.to.append(r.operand(r.it.find("label") ? "label" : "operand").text);
+    r.to.append(r.operand("label", "operand").text);
     r.write(";\n");
     r.close(when);
     return r.power;
@@ -279,7 +279,7 @@ constexpr Row rows[] = {
     {reset_coil, " r_coil ", " operand "},
     {rising_coil, " p_coil ", " operand bit "},
     {falling_coil, " n_coil ", " operand bit "},
-    {timer_coil, " tp_coil ton_coil tof_coil tonr_coil ", " timer pt "},
+    {timer_coil, " tp_coil ton_coil tof_coil tonr_coil ", " timer pt operand value "},
     {timer_reset, " rt_coil resetiectimercoil ", " timer operand "},
     {timer_preset, " pt_coil ", " timer operand pt "},
     {jump_coil, " jumpcoil ", " operand label "},
@@ -288,7 +288,8 @@ constexpr Row rows[] = {
     {failed_return_coil, " returnfalse ", ""},
     {reset_set, " s_rs rs ", " s s1 r r1 operand "},
     {set_reset, " s_sr sr ", " s s1 r r1 operand "},
-    {move, " move s_move ", " in out# "},
+    {move, " move ", " in out# "},
+    {text_move, " s_move ", " in out "},
     {arithmetic, " add sub mul div mod and or xor ", " in# out "},
     {negation, " neg ", " in out "},
     {inversion, " inv ", " in out "},
@@ -307,8 +308,8 @@ constexpr Row rows[] = {
      "ror ",
      " in n out "},
     {text_conversion, " s_conv ", " in out "},
-    {bits_set, " set_bf ", " s_bit operand count "},
-    {bits_reset, " reset_bf ", " s_bit operand count "},
+    {bits_set, " set_bf ", " s_bit operand count n "},
+    {bits_reset, " reset_bf ", " s_bit operand count n "},
     {timer, " tp ton tof tonr "},
     {up_counter, " ctu "},
     {down_counter, " ctd "},

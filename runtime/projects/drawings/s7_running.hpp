@@ -27,6 +27,10 @@ struct Running {
 
     /// What is at a pin; where nothing is, that is told.
     Value operand(std::string_view pin) const;
+    /// The pin has the other name in another edition, or another notation.
+    Value operand(std::string_view pin, std::string_view other) const {
+        return operand(it.find(pin) ? pin : other);
+    }
     /// As a value of the type that the box calculates in, where that is a number or a
     /// bit string. A literal takes it from what stands beside it.
     Value typed(const Value& value, std::string_view which = "SrcType") const;

@@ -40,7 +40,8 @@ Excerpts SimaticAccess::quoted(pugi::xml_node named) const {
 
 Excerpts SimaticAccess::label(pugi::xml_node named) const {
     Excerpts made;
-    write_name(made, named, st::word_of(named.attribute("Name").value()).has_value());
+    const std::string_view name = named.attribute("Name").value();
+    write_name(made, named, st::word_of(name) || st::same_name(name, "end"));
     return made;
 }
 
@@ -103,6 +104,8 @@ void SimaticAccess::write_token(Excerpts& to, pugi::xml_node token) const {
 void SimaticAccess::write_components(Excerpts& to, pugi::xml_node symbol, bool is_local) const {
     bool is_first = true;
     for (const pugi::xml_node part : symbol.children()) {
+        if (is_called(part, "Address")) write_address(to, part);
+        if (is_called(part, "Token") && symbol.child("Address")) write_token(to, part);
         if (const std::string slice = file_.plain(part.attribute("Text")); slice.starts_with('%'))
             to.write("." + slice, place(part));
         if (!is_called(part, "Component")) continue;
@@ -142,20 +145,44 @@ void SimaticAccess::write_constant(Excerpts& to, pugi::xml_node constant, bool i
     write_name(to, constant, !is_local || !is_identifier(file_.plain(constant.attribute("Name"))));
 }
 
-/// Bits from the beginning of an area; of timers and counters their number.
+namespace {
+
+/// X, B, W, D or L of what has 1, 8, 16, 32 or 64 bits; 0: its type is none of these.
+char size_of(std::string_view type) {
+    static constexpr std::pair<char, std::string_view> sizes[] = {
+        {'X', " bool "},
+        {'B', " byte char sint usint "},
+        {'W', " word int uint date s5time "},
+        {'D', " dword dint udint real time time_of_day "},
+        {'L', " lword lint ulint lreal ltime ldt ltime_of_day "}};
+    const std::string word = fmt::format(" {} ", lower(type));
+    for (const auto& [size, types] : sizes)
+        if (types.find(word) != types.npos) return size;
+    return '\0';
+}
+
+}  // namespace
+
+/// Bits from the beginning of an area, or of a data block, which has a number, or stands before a
+/// dot with its name for a type; of timers and counters their number.
 void SimaticAccess::write_address(Excerpts& to, pugi::xml_node address) const {
     const std::string area = file_.plain(address.attribute("Area"));
-    const std::string type = lower(file_.plain(address.attribute("Type")));
+    const std::string type = file_.plain(address.attribute("Type"));
+    const std::string block = file_.plain(address.attribute("BlockNumber"));
     const std::uint64_t bits = address.attribute("BitOffset").as_ullong();
     if (area == "Timer" || area == "Counter")
         return to.write(fmt::format("{}{}", area[0], bits), place(address));
+    const char size = size_of(type);
+    const bool is_block = area == "DB";
+    if (is_block && size == '\0') return to.write(fmt::format("\"{}\"", type), place(address));
+    if (is_block && !block.empty()) to.write(fmt::format("%DB{}.", block), place(address));
     const char letter = area == "Input" ? 'I' : area == "Output" ? 'Q' : 'M';
-    const char* size = type == "byte"                      ? "B"
-                       : type == "word" || type == "int"   ? "W"
-                       : type == "dword" || type == "dint" ? "D"
-                                                           : "";
-    to.write(*size == '\0' ? fmt::format("%{}{}.{}", letter, bits / 8, bits % 8)
-                           : fmt::format("%{}{}{}", letter, size, bits / 8),
+    const bool is_bit = size == 'X' || size == '\0';
+    const std::string before = is_block ? fmt::format("{}DB{}", block.empty() ? "%" : "", size)
+                               : is_bit ? fmt::format("%{}", letter)
+                                        : fmt::format("%{}{}", letter, size);
+    to.write(is_bit ? fmt::format("{}{}.{}", before, bits / 8, bits % 8)
+                    : fmt::format("{}{}", before, bits / 8),
              place(address));
 }
 

@@ -61,6 +61,11 @@ std::string help_of_given(const Expression& value, const Type& type, bool texts)
         value.variable->text);
 }
 
+/// CODESYS and Siemens convert an output as they convert what is assigned.
+bool takes_outputs_as_assigned(const Dialect& dialect) {
+    return dialect.is_loose || dialect.packs_as_s7;
+}
+
 /// A variable of type `given` stands for an output or a VAR_IN_OUT.
 void check_given(Checking& c, const Argument& argument, const Variable& parameter,
                  const Type& given) {
@@ -81,11 +86,12 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         Expression output = *value;
         output.kind = E::name;
         output.type = type;
-        return value->place.dialect().is_loose && may_become(c, output, given);
+        return takes_outputs_as_assigned(value->place.dialect()) && may_become(c, output, given);
     };
     const bool fits =
         same_type(given, *type) || derives || is_number ||
-        (parameter.section == Section::output && has_same_form(c, value->place, *type, given)) ||
+        ((parameter.section == Section::output || type->kind == Kind::structure) &&
+         has_same_form(c, value->place, *type, given)) ||
         (parameter.section == Section::in_out
              ? texts && type->is_open
              : texts || is_split ||

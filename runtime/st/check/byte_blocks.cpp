@@ -51,6 +51,13 @@ const Type& bytes_type(Checking& c, std::uint64_t count) {
     return made;
 }
 
+/// A structure of it alone, which has two bytes, as an array of one byte has them.
+const Type& in_a_word(Checking& c, const Type& byte) {
+    Type& made = c.make_type(Kind::structure, {});
+    made.members.push_back(&c.make_variable({}, "there", &byte));
+    return made;
+}
+
 struct Seen {
     Block before, behind;  ///< the call
     Expression* bytes = nullptr;
@@ -69,22 +76,28 @@ std::optional<Seen> see_bytes(Checking& c, Expression* given, bool is_written) {
         return {};
     }
     const Type& bytes = bytes_type(c, (bits + 7) / 8);
-    Variable &whole = hidden(c, "whole", *type), &made = hidden(c, "bytes", bytes);
+    const bool is_byte = bits <= 8;
+    Variable &kept = hidden(c, "whole", is_byte ? in_a_word(c, *type) : *type),
+             &made = hidden(c, "bytes", bytes);
+    const auto whole = [&] {
+        Expression* value = make_use(c, *given, kept);
+        return is_byte ? make_member(c, value, "there") : value;
+    };
     const auto view = [&] {
         const Type& pointer = pointer_to(c, bytes);
-        return make_target(c, *given, make_reference_to(c, make_use(c, *given, whole), pointer),
+        return make_target(c, *given, make_reference_to(c, make_use(c, *given, kept), pointer),
                            &bytes);
     };
     const auto assign = [&](Block& to, Expression* target, Expression* value) {
         to.push_back(make_assignment(c, given->place, target, value));
     };
     Seen seen;
-    assign(seen.before, make_use(c, *given, whole), given);
+    assign(seen.before, whole(), given);
     assign(seen.before, make_use(c, *given, made), view());
     seen.bytes = make_use(c, *given, made);
     if (!is_written) return seen;
     assign(seen.behind, view(), make_use(c, *given, made));
-    assign(seen.behind, given, make_use(c, *given, whole));
+    assign(seen.behind, given, whole());
     return seen;
 }
 

@@ -383,6 +383,7 @@ static void name_instance_of_block(Checking& c, Expression*& e) {
 
 /// It is a call of what the standard has.
 static const Type* check_function(Checking& c, Expression*& e, const Type* expected) {
+    if (const auto given = check_move(c, e, expected)) return *given;
     if (const auto given = check_variant_call(c, e)) return *given;
     if (const auto given = check_reference_call(c, e, expected)) return *given;
     if (const auto given = check_place_call(c, e)) return *given;
@@ -406,8 +407,8 @@ static std::optional<const Type*> call_of_member(Checking& c, Expression*& e, bo
     const Expression& callee = *e->operands[0];
     const Type* of = check(c, e->operands[0]->operands[0]);
     if (!of) return nullptr;
-    if (of->kind == Kind::standard && same_name(of->standard->name, callee.token.text)) {
-        note_timer(c, *callee.operands[0], *of->standard);
+    if (is_named_as_its_kind(*of, callee.token.text)) {
+        if (of->standard) note_timer(c, *callee.operands[0], *of->standard);
         e = make_call(c, *e, callee.operands[0], e->arguments);  // `#delay.TON(...)`
         return check_instance_call(c, e, *of, as_statement);
     }

@@ -36,8 +36,11 @@ bool means_function(Checking& c, const Expression& call, const Routine& method);
 
 // timers.cpp
 
-/// Siemens' IEC_TIMER is what it is called as; all timers have one layout. Null: it is no TOF or
-/// TP.
+/// `TON` of `#delay.TON(...)`, also where the kind is Structured Text itself, as TONR is.
+bool is_named_as_its_kind(const Type& type, std::string_view name);
+/// Siemens' IEC_TIMER that is called as a TONR is declared as one, which has an input more.
+void make_sums_of_timers(Checking& c);
+/// Any other is what it is called as; all timers have one layout. Null: it is no TOF or TP.
 const Type* timer_of(Checking& c, const Type& type, const Token& called);
 /// Notes what a call makes a timer.
 void note_timer(Checking& c, const Expression& timer, const BlockType& called);
@@ -74,6 +77,14 @@ const Type* check_extreme_text(Checking& c, Expression*& e);
 /// `INT_TO_REAL(x)`, `TO_REAL(x)`, `REAL_TRUNC_INT(x)`: a conversion stands for the call then.
 /// Empty if the name is none of one.
 std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name);
+/// Whether it is one between elementary types.
+bool is_conversion_name(std::string_view name);
+
+// bit_patterns.cpp
+
+/// `MOVE(x)` is what Move of Siemens' LAD and FBD does: a number, a bit string or a time goes to
+/// what is wanted by its bits, the lowest first. All else is assigned. Empty: it is no such call.
+std::optional<const Type*> check_move(Checking& c, Expression*& e, const Type* expected);
 
 // any_inputs.cpp
 

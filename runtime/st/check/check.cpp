@@ -1,5 +1,6 @@
 #include "runtime/st/check/check.hpp"
 
+#include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/classes.hpp"
 #include "runtime/st/check/configuration.hpp"
 #include "runtime/st/check/declarations.hpp"
@@ -42,6 +43,7 @@ Checked check(Tree& tree, const Catalog& catalog, Evaluate evaluate, Diagnostics
     Checking c{tree, catalog, evaluate, out};
     c.missing_libraries = missing;
     c.uses = uses;
+    make_sums_of_timers(c);
     add_configured_programs(c);
     collect_names(c);
     resolve_bases(c);

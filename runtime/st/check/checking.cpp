@@ -1,5 +1,9 @@
 #include "runtime/st/check/checking.hpp"
 
+#include "runtime/st/check/calls.hpp"
+#include "runtime/st/functions/standard.hpp"
+#include "runtime/st/vendors/names.hpp"
+
 namespace lineshaft::st {
 
 Nothing Checking::fail(const char* code, Place place, std::string message, std::string help) {
@@ -68,8 +72,28 @@ const Prefixes* Checking::prefixes_at(Place place) const {
     return innermost == all->second.rend() ? nullptr : &*innermost;
 }
 
+namespace {
+
+/// What SCL names without quotes, and so do LAD and FBD by their boxes: a function of the standard,
+/// a conversion, or a kind of block.
+bool is_instruction(const Checking& c, std::string_view name) {
+    return find_standard_function(name) || is_conversion_name(name) ||
+           c.catalog.find(standard_type_name(name));
+}
+
+/// A block of the user's whose name is declared in quotes, and stands without them here.
+bool is_without_its_quotes(const Token& name, const Token& declared) {
+    return is_instruction_name(name) && declared.quoted && !is_prelude(declared) &&
+           !is_library(declared);
+}
+
+}  // namespace
+
 Routine* Checking::find_routine(const Token& name) {
-    return look_up(&Names::routines, name);
+    Routine* found = look_up(&Names::routines, name);
+    if (!found || !is_without_its_quotes(name, found->pou->name)) return found;
+    Routine* of_prelude = find_in(prelude.routines, name.text);
+    return of_prelude || is_instruction(*this, name.text) ? of_prelude : found;
 }
 
 bool Checking::is_lost(const Token& name) const {

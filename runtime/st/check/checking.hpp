@@ -211,6 +211,8 @@ struct Checking {
     /// libraries.
     template <class T>
     auto find_inside_out(NameMap<T>& map, const Token& name) {
+        if (is_users_name(name))
+            if (auto* found = find_in(map, name.text)) return found;
         if (const Prefixes* here = prefixes_at(name.place))
             for (const std::string_view path : here->paths)
                 if (auto* found = find_in(map, fmt::format("{}.{}", path, name.text))) return found;

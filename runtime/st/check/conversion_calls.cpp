@@ -152,6 +152,14 @@ const Type* make_written(Checking& c, Expression*& e, Expression*& value, const 
 
 }  // namespace
 
+bool is_conversion_name(std::string_view name) {
+    const auto is_type = [](std::string_view type) {
+        return find_elementary(type) || same_name(type, s5time_type.name);
+    };
+    const auto read = read_conversion(name);
+    return read && is_type(read->to) && (read->from.empty() || is_type(read->from));
+}
+
 std::optional<const Type*> check_conversion(Checking& c, Expression*& e, std::string_view name) {
     const auto read = read_conversion(name);
     if (!read) return {};

@@ -43,13 +43,16 @@ bool is_time_of_number(const Type& from, const Type& to) {
 }
 
 /// What TIA Portal converts by itself where a block's IEC check is off: numbers, and bit strings as
-/// integers or as the pattern of a real number of their width.
+/// integers or as the pattern of a real number of their width; times of their width likewise.
 bool converts_unchecked(const Expression& e, const Type& to) {
     const Type& from = e.type->plain();
     const auto is_whole = [](const Type& type) {
         return type.kind == Kind::integer || type.kind == Kind::bits;
     };
-    if (!e.place.dialect().packs_as_s7 || is_constant(e) || to.is_subrange) return false;
+    const Dialect& dialect = e.place.dialect();
+    if (!dialect.packs_as_s7 || to.is_subrange) return false;
+    if (is_pattern_of_time(from, to, dialect)) return true;
+    if (is_constant(e)) return false;
     if (is_whole(from) && is_whole(to)) return true;
     const bool are_numbers = from.is_number() && to.is_number();
     const bool are_patterns = (from.kind == Kind::bits && to.kind == Kind::real) ||
@@ -64,6 +67,13 @@ void warn_of_check(Checking& c, const Expression& e, const Type& to) {
         fmt::format("{} does not hold every {}", describe(to), from),
         fmt::format("TIA Portal takes it where the block's IEC check is off; write {}_TO_{}(...)",
                     from, to.name));
+}
+
+/// A CHAR takes that of a STRING, a WCHAR that of a WSTRING.
+bool is_first_character(const Expression& e, const Type& to) {
+    const Type& from = *e.type;
+    return e.place.dialect().packs_as_s7 && from.kind == Kind::text && to.is_character &&
+           from.is_wide == (to.bits == 16) && !is_constant(e);
 }
 
 /// A REAL loses of a DINT what is above 2^24, and rounds an LREAL; both round an integer of 64
@@ -384,6 +394,7 @@ bool coerce(Checking& c, Expression*& e, const Type& to) {
         if (const auto only = only_character(e->constant.text, to))
             return become(c, e, to, {.integer = *only});
     if (from.is_character && to.kind == Kind::text) return convert(c, e, to);
+    if (is_first_character(*e, to)) return warn_of_check(c, *e, to), convert(c, e, to);
     const bool are_alike = from.kind == Kind::array && to.kind == Kind::array &&
                            from.count() == to.count() && same_type(*from.element, *to.element);
     if ((are_alike && e->place.dialect().is_loose) || has_same_form(c, e->place, from, to))

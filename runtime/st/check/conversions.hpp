@@ -35,8 +35,8 @@ void recode(Checking& c, Expression*& e, const Type& to);
 /// of it, or a conversion. False where it does not, which was told: L0905, L0906, or L0908 for a
 /// constant that is out of range.
 bool coerce(Checking& c, Expression*& e, const Type& to);
-/// In SCL: arrays of as many elements, and a structure without a name and one with the same
-/// members, are assigned to each other. Other bounds are told.
+/// In SCL: arrays of as many elements, and a structure without a name and one with members of the
+/// same types, whatever their names, are assigned to each other. Other bounds are told.
 bool has_same_form(Checking& c, const Place& at, const Type& from, const Type& to);
 /// That a value of `to` does not hold every one of what `e` is of.
 void warn_of_loss(Checking& c, const Expression& e, const Type& to);
@@ -73,6 +73,12 @@ void enumeration_becomes_number(Checking& c, Expression*& e);
 
 /// `e`, which is of type `from`, as a value of `to`.
 const Type* convert_result(Checking& c, Expression*& e, const Type& from, const Type& to);
+
+// bit_patterns.cpp
+
+/// A time, a date or a time of day, and a number, a bit string or another of these, of as many bits
+/// in the memory of an S7.
+bool is_pattern_of_time(const Type& from, const Type& to, const Dialect& dialect);
 
 // operands.cpp
 

@@ -26,10 +26,10 @@ Type& global_variables(Checking& c) {
 bool is_beside_a_type(Checking& c, const Token& name) {
     const Dialect& dialect = name.place.dialect();
     if (c.globals.contains(name.text)) return false;
-    if (dialect.variables_hide_types) return c.users.types.contains(name.text);
-    if (!dialect.is_loose && !dialect.capitals_count) return false;
     const Routine* block = find_in(c.users.routines, name.text);
     const bool is_type = block && block->pou->kind == PouKind::function_block;
+    if (dialect.variables_hide_types) return c.users.types.contains(name.text) || is_type;
+    if (!dialect.is_loose && !dialect.capitals_count) return false;
     const bool is_program = block && block->pou->kind == PouKind::program && dialect.is_loose;
     return is_type || is_program || (block && is_folder(*block->pou)) ||
            c.users.types.contains(name.text);
@@ -134,6 +134,16 @@ void declare_externals(Checking& c) {
         }
 }
 
+/// `DB5` is the data block that has the number, unless one has the name.
+void name_by_numbers(Checking& c) {
+    for (const Pou* pou : c.tree.units) {
+        if (pou->kind != PouKind::data_block || pou->number.empty()) continue;
+        Variable* const block = find_in(c.globals, pou->name.text);
+        const std::string& name = c.checked.names.emplace_back(fmt::format("DB{}", pou->number));
+        if (block) c.globals.emplace(name, block);
+    }
+}
+
 }  // namespace
 
 std::string_view name_in_list(Checking& c, const DeclarationBlock& block,
@@ -196,6 +206,7 @@ void declare_globals(Checking& c) {
         c.globals.emplace(pou->name.text, &variable);
         c.note(variable.name.place, variable);
     }
+    name_by_numbers(c);
 }
 
 void note_update(Checking& c, const Variable& variable) {

@@ -258,18 +258,23 @@ const Type* check_direct(Checking& c, Expression& e) {
     return variable.type;
 }
 
-Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
-    constexpr std::string_view names[areas] = {"%IB0..%IB1023", "%QB0..%QB1023", "%MB0..%MB1023"};
-    const std::string_view name = names[static_cast<std::size_t>(area)];
+Variable& variable_at(Checking& c, const Token& at, std::string_view name, const Type& type,
+                      const ImageAddress& address) {
     for (Variable* known : image_of(c, at.place).variables)
         if (known->text == name && is_seen_alike(*known, at.place)) return *known;
+    Variable& made = c.make_variable(at, name, &type);
+    made.is_direct = made.used = made.is_set = true;
+    put(c, made, address);
+    return made;
+}
+
+Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area) {
+    constexpr std::string_view names[areas] = {"%IB0..%IB1023", "%QB0..%QB1023", "%MB0..%MB1023"};
     Type& array = c.make_type(Kind::array, {});
     array.upper = 1023;
     array.element = &bits_type(8);
-    Variable& bytes = c.make_variable(at, name, &array);
-    bytes.is_direct = bytes.used = bytes.is_set = true;
-    put(c, bytes, {.area = area, .bits = 8});
-    return bytes;
+    return variable_at(c, at, names[static_cast<std::size_t>(area)], array,
+                       {.area = area, .bits = 8});
 }
 
 void finish_image(Checking& c) {

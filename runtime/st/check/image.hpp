@@ -16,6 +16,10 @@ const Type* check_direct(Checking& c, Expression& e);
 /// How long each area is. Warns of variables of which none is a part of the other.
 void finish_image(Checking& c);
 
+/// What stands at an address, as a variable that nobody can name but by this.
+Variable& variable_at(Checking& c, const Token& at, std::string_view name, const Type& type,
+                      const ImageAddress& address);
+
 /// The first 1024 bytes of an area, as an array that nobody can name.
 Variable& bytes_of_area(Checking& c, const Token& at, ImageAddress::Area area);
 

@@ -71,11 +71,21 @@ const Type* check_s5time(Checking& c, Expression& e) {
     return &s5time_type;
 }
 
+/// `90-1-1` of Siemens is in 1990, `12-7-12` in 2012.
+std::string with_whole_year(const Expression& e) {
+    const std::string_view text = e.token.text;
+    const std::size_t digits = text.find('-');
+    const bool is_short = e.place.dialect().has_s7_instructions && (digits == 1 || digits == 2);
+    if (!is_short) return std::string(text);
+    const bool is_before_2000 = digits == 2 && text[0] == '9';
+    return fmt::format("{}{}{}", is_before_2000 ? "19" : "20", digits == 1 ? "0" : "", text);
+}
+
 const Type* check_time(Checking& c, Expression*& slot) {
     Expression& e = *slot;
     const std::string_view prefix = e.place.text().substr(0, e.place.text().find('#'));
     if (const Type* type = find_prefix(prefix); type && type->is_date()) {
-        const auto value = read_time(e.token.text, type->kind);
+        const auto value = read_time(with_whole_year(e), type->kind);
         if (!value)
             return c.fail(code::value_out_of_range, e.place,
                           fmt::format("'{}' is not a {}", e.place.text(), type->name),

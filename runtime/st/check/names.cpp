@@ -106,6 +106,11 @@ Token named_behind_point(Token token) {
     return token;
 }
 
+/// `T1` of SCL is the timer, beside a tag `"T1"`.
+bool is_hidden_by_s5(const Token& token, const Variable& global) {
+    return is_instruction_name(token) && global.name.quoted && read_s5_number(token.text);
+}
+
 Variable* find_in_any_capitals(Checking& c, const Token& token) {
     if (token.text.starts_with('.')) return find_global(c, named_behind_point(token));
     if (Variable* own = find_own(c, token)) return own;
@@ -113,7 +118,8 @@ Variable* find_in_any_capitals(Checking& c, const Token& token) {
     if (const auto full = is_within_list(c) ? name_in_own_list(c, token) : std::nullopt)
         if (Variable* own = find_in_any_capitals(c, *full)) return own;
     if (!is_prelude(token))
-        if (Variable* global = find_global(c, token)) return global;
+        if (Variable* global = find_global(c, token); global && !is_hidden_by_s5(token, *global))
+            return global;
     return token.quoted && c.routine ? find_in(c.routine->names, token.text) : nullptr;
 }
 
@@ -388,7 +394,8 @@ std::optional<const Type*> check_value_alone(Checking& c, Expression*& e) {
 
 const Type* check_name(Checking& c, Expression*& e, const Type* expected) {
     const Token& token = e->token;
-    if (token.word == Word::direct) return check_direct(c, *e);
+    if (token.word == Word::direct)
+        return is_any_pointer(token.text) ? check_any_pointer(c, e) : check_direct(c, *e);
     if (!token.quoted && !token.local && is_truth(token))
         return become(c, e, bool_type, {.integer = same_name(token.text, "true")});
     const bool is_text = is_text_for(c, *e, expected);

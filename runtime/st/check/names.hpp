@@ -49,6 +49,12 @@ std::vector<std::string> shown_names(const std::vector<Variable*>& parts, Place 
 const Type* check_member(Checking& c, Expression*& e);
 /// `DB10.DBW4`, `"Data".%DBX2.0` of a data block, as an S7 has its bytes. Empty: it is none.
 std::optional<const Type*> check_data_address(Checking& c, Expression*& e);
+/// `P#DB102.DBX124.0 WORD 2` of Siemens is an array of what stands there.
+bool is_any_pointer(std::string_view address);
+const Type* check_any_pointer(Checking& c, Expression*& e);
+/// `block`, a data block, as an array of its bytes from 0 on. Null: it has parts without bytes,
+/// which was told.
+Expression* bytes_of_block(Checking& c, const Expression& like, Expression* block);
 /// `table[i, 2]`, `text[3]`.
 const Type* check_index(Checking& c, Expression*& e);
 /// `word.%X3`, `word.%B1`, `word.3`.

@@ -3,6 +3,7 @@
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/image.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 
 namespace lineshaft::st {
@@ -11,7 +12,8 @@ namespace {
 
 using Area = ImageAddress::Area;
 
-constexpr std::string_view byte_names[] = {"b0", "b1", "b2", "b3"};
+constexpr std::string_view byte_names[] = {"b0", "b1", "b2", "b3", "b4", "b5", "b6", "b7"};
+constexpr int area_of_blocks = 0x84;
 
 Token named(const Expression& like, std::string_view text) {
     return {.word = Word::name, .place = like.place, .text = text};
@@ -44,6 +46,29 @@ std::vector<Expression*> given_for(Checking& c, const Expression& call,
     return {};
 }
 
+/// The data block that has the number; null: it is told that there is none.
+Expression* numbered_block(Checking& c, Expression*& number) {
+    if (!check(c, number)) return nullptr;
+    become_lint(c, number);
+    if (!is_constant(*number))
+        return c.fail(code::not_supported, number->place,
+                      "PEEK and POKE of a data block whose number is no constant are not supported",
+                      "use a variable of the data block by its name");
+    const std::string name = fmt::format("DB{}", to_string(number->constant.integer));
+    Expression* block = make_function_name(c, *number, c.checked.names.emplace_back(name));
+    if (!find_variable(c, block->token))
+        return c.fail(code::not_declared, number->place,
+                      fmt::format("there is no data block with the number {}",
+                                  to_string(number->constant.integer)),
+                      "one of TIA Portal's exports has its number, and so has DATA_BLOCK DB5");
+    return check(c, block) ? block : nullptr;
+}
+
+bool is_area_of_blocks(Checking& c, Expression*& area) {
+    if (!check(c, area)) return false;
+    return is_constant(*area) && area->constant.integer == area_of_blocks;
+}
+
 std::optional<Area> area_of(Checking& c, Expression*& number) {
     if (!check(c, number)) return {};
     become_lint(c, number);
@@ -52,11 +77,10 @@ std::optional<Area> area_of(Checking& c, Expression*& number) {
     const bool is_of_periphery = code >= first_of_periphery && code <= last_of_periphery;
     const Wide area = code - (is_of_periphery ? first_of_periphery : first);
     if (area >= 0 && area < Wide{areas}) return static_cast<Area>(area);
-    c.fail(
-        code::not_supported, number->place,
-        "PEEK and POKE are of the areas 16#81, 16#82 and 16#83: inputs, outputs and memory bits, "
-        "and of 16#1 and 16#2, which are inputs and outputs, too",
-        "use a variable of a data block by its name");
+    c.fail(code::not_supported, number->place,
+           "PEEK and POKE are of the areas 16#81, 16#82, 16#83 and 16#84: inputs, outputs, memory "
+           "bits and data blocks, and of 16#1 and 16#2, which are inputs and outputs, too",
+           "write one of these numbers");
     return {};
 }
 
@@ -68,10 +92,9 @@ int count_of(Checking& c, std::string_view function, Expression*& value) {
     const Type* type = check(c, value);
     if (!type) return 0;
     if (type->is_any()) return 1;
-    const bool fits = (type->kind == Kind::bits || type->is_integer()) && type->bits <= 32;
-    if (fits) return type->bits / 8;
+    if (type->kind == Kind::bits || type->is_integer()) return type->bits / 8;
     c.fail(code::type_does_not_fit, value->place,
-           fmt::format("POKE writes a BYTE, a WORD or a DWORD, not {}", describe(*type)));
+           fmt::format("POKE writes a BYTE, a WORD, a DWORD or an LWORD, not {}", describe(*type)));
     return 0;
 }
 
@@ -89,17 +112,20 @@ bool take_bytes(Checking& c, Expression*& e, const Routine& called) {
     const std::vector<Argument> eno = take_eno(c, e);
     std::vector<Expression*> given = given_for(c, *e, names);
     if (given.empty()) return false;
-    const auto area = area_of(c, given[0]);
+    const bool is_of_block = is_area_of_blocks(c, given[0]);
+    Expression* const block = is_of_block ? numbered_block(c, given[1]) : nullptr;
+    const auto area = is_of_block ? std::nullopt : area_of(c, given[0]);
     const int count = count_of(c, function, given.back());
-    if (!area || count == 0 || !check(c, given[2])) return false;
+    if ((!area && !block) || count == 0 || !check(c, given[2])) return false;
+    if (block && !bytes_of_block(c, *e, block)) return false;
     if (has_call(*given[2]))
         return c.fail(code::not_supported, given[2]->place, "a call as byteOffset is not supported",
                       "assign it to a variable");
     become_lint(c, given[2]);
-    Variable& bytes = bytes_of_area(c, e->token, *area);
     const auto byte_at = [&](int i) {
         Expression* element = make(c, E::index, *e);
-        element->operands[0] = make_use(c, *e, bytes);
+        element->operands[0] = block ? bytes_of_block(c, *e, block)
+                                     : make_use(c, *e, bytes_of_area(c, e->token, *area));
         element->arguments.push_back(
             {.value = make_binary(c, e->place, e->place, Word::plus, given[2],
                                   make_constant(c, *e, lint_type, {.integer = i}))});

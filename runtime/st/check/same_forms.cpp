@@ -16,8 +16,7 @@ bool is_alike(const Type& a, const Type& b) {
     const bool are_structures = a.kind == Kind::structure && (a.is_unnamed || b.is_unnamed);
     return are_structures &&
            std::ranges::equal(a.members, b.members, [](const Variable* x, const Variable* y) {
-               return same_name(x->text, y->text) && x->type && y->type &&
-                      is_alike(*x->type, *y->type);
+               return x->type && y->type && is_alike(*x->type, *y->type);
            });
 }
 

@@ -158,6 +158,15 @@ const Type* select_by_numbers(Checking& c, Statement& s, const Type& type) {
     return s.value->type;
 }
 
+/// Siemens compares one label behind the other, until one agrees.
+void tell_of_second(Checking& c, const Expression& label) {
+    const std::string message = fmt::format("'{}' stands twice in this CASE", label.place.text());
+    if (label.place.dialect().has_s7_instructions)
+        c.warn(code::value_out_of_range, label.place, message, "only the first one counts");
+    else
+        c.fail(code::value_out_of_range, label.place, message, "only the first one would count");
+}
+
 void check_case(Checking& c, Statement*& slot) {
     take_type_names(c, *slot);
     const Type* type = check(c, slot->value);
@@ -191,10 +200,7 @@ void check_case(Checking& c, Statement*& slot) {
             const auto meets = [&, low = *lower, high = *upper](const auto& other) {
                 return low <= other.second && other.first <= high;
             };
-            if (std::ranges::any_of(seen, meets))
-                c.fail(code::value_out_of_range, from->place,
-                       fmt::format("'{}' stands twice in this CASE", from->place.text()),
-                       "only the first one would count");
+            if (std::ranges::any_of(seen, meets)) tell_of_second(c, *from);
             seen.emplace_back(*lower, *upper);
         }
         check(c, branch.body);

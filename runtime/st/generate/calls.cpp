@@ -229,8 +229,11 @@ void take(Writing& w, const Location& frame, const Expression& e, const std::vec
         const auto taken = [&] {
             Slot slot = load(w, from);
             if (is_finer_than_ms(callee, given, e.place)) slot = whole_ms(w, slot, e.place);
-            return argument.is_negated ? w.emit(Op::not_bool, none, slot)
-                                       : convert(w, slot, given, wanted, false, none);
+            if (argument.is_negated) return w.emit(Op::not_bool, none, slot);
+            const bool is_time_of_s7 = e.place.dialect().has_s7_instructions &&
+                                       wanted.kind == Kind::time && !wanted.counts_ns;
+            slot = convert(w, slot, given, wanted, false, none);
+            return is_time_of_s7 && !given.is_time() ? whole_ms(w, slot, e.place) : slot;
         };
         if (argument.value->kind == E::bit) {
             store_bits(w, *argument.value, taken());

@@ -168,8 +168,10 @@ void write_choice(Writing& w, const Statement& s, Slot selector, const IndexTabl
     for (const Branch& branch : s.branches) {
         w.land();
         for (const auto& [from, to] : branch.labels)
-            for (auto i = from->constant.integer; i <= (to ? to : from)->constant.integer; ++i)
-                w.code.numbers[table.place(static_cast<std::uint64_t>(i))] = w.next();
+            for (auto i = from->constant.integer; i <= (to ? to : from)->constant.integer; ++i) {
+                std::int64_t& number = w.code.numbers[table.place(static_cast<std::uint64_t>(i))];
+                if (number < 0) number = w.next();
+            }
         write_block(w, branch.body);
         w.jump(Op::jump, 0, 0, ends);
     }

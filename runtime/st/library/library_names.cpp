@@ -40,7 +40,8 @@ bool is_of_softmotion(const Declaration& declared) {
 NameSet declared_names(const Tree& tree) {
     NameSet names;
     for (const TypeDeclaration& type : tree.types) names.insert(type.name.text);
-    for (const Pou* unit : tree.units) names.insert(unit->name.text);
+    for (const Pou* unit : tree.units)  // `"S_PULSE"` of SCL is not S_PULSE
+        if (!is_users_name(unit->name)) names.insert(unit->name.text);
     for (const auto& [name, is_name] : tree.lost) names.insert(name);
     for (const TypeText& type : tree.type_texts)
         if (type.kind == TypeText::Kind::enumeration && !type.is_qualified_only)

@@ -191,7 +191,27 @@ void read_number(TextCursor& in) {
     in.add(real ? Word::real : Word::integer);
 }
 
+/// `P#DB102.DBX124.0 WORD 2`, `P#M 100.0 BYTE 4` and `P# I2.0 BYTE 4` of Siemens, at the sign: one
+/// address.
+void read_any_pointer(TextCursor& in) {
+    const auto is_part = [](char c) { return is_letter(c) || is_digit(c) || c == '.'; };
+    const auto skip_spaces = [&] { in.skip_while([](char c) { return c == ' '; }); };
+    ++in.at;
+    skip_spaces();
+    in.skip_while(is_part);
+    if (is_letter(in.text[in.at - 1]) && in.peek() == ' ') skip_spaces(), in.skip_while(is_part);
+    const std::size_t end_of_place = in.at;
+    skip_spaces();
+    in.skip_while(is_letter);
+    skip_spaces();
+    const std::size_t end_of_type = in.at;
+    in.skip_while(is_digit);
+    if (in.at == end_of_type) in.at = end_of_place;
+    in.add(Word::direct);
+}
+
 void read_prefix(TextCursor& in, std::string_view text) {
+    if (in.dialect.packs_as_s7 && same_name(text, "p")) return read_any_pointer(in);
     in.add(Word::prefix);
     in.start = ++in.at;
     if (find_called(date_prefixes, text) && is_digit(in.peek())) {

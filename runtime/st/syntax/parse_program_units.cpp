@@ -37,7 +37,7 @@ bool at_attribute(const Cursor& p) {
 /// POU_Header : Using_Directive * Generic_Decl ? Pou_Bases Generic_Decl ? Attribute * Retained ?
 ///              Data_Block_Type ?
 /// Data_Block_Type : ( Array_Spec | Struct_Decl | Type_Access ) ';' ?
-/// Only a DATA_BLOCK has a type here; a name is always that.
+/// Only a DATA_BLOCK has a type here, unless it stands behind a ':'; a name is always that.
 void parse_header(Parsing& p, Pou& pou) {
     const bool has_using = p.is(Word::using_) && p.is_name(1);
     if (has_using) open_scope(p, pou.place.begin, p.scope ? p.scope->path : std::string_view());
@@ -51,7 +51,7 @@ void parse_header(Parsing& p, Pou& pou) {
     pou.base = std::exchange(pou.result, nullptr);
     const bool has_type =
         p.is(Word::struct_) || p.is(Word::array_) || (p.is_name() && !p.is(Word::begin_));
-    if (!has_type) return;
+    if (pou.base || !has_type) return;
     pou.base = parse_type(p);
     p.accept(Word::semicolon);
 }
@@ -217,6 +217,7 @@ Pou* parse_pou(Parsing& p) {
     Pou& pou = p.tree.pous.emplace_back();
     pou.kind = words.kind;
     pou.doc = doc;
+    pou.number = block_number(p, first);
     pou.is_class = opener.word == Word::class_;
     pou.follows_init = opener.word == Word::method_ && has_attribute(p, first, "call_after_init");
     pou.copying = has_attribute(p, first, "no_assign")           ? Copying::refused

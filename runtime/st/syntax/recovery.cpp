@@ -211,9 +211,14 @@ bool at_label_of_case(const Parsing& p) {
 }
 
 std::string found(const Cursor& p) {
-    const std::string_view text = p.here().place.text();
-    return p.is(Word::end_of_file) ? std::string(shown(Word::end_of_file))
-                                   : fmt::format("'{}'", text.substr(0, text.find('\n')));
+    constexpr std::size_t longest = 60;  // bytes that are shown
+    if (p.is(Word::end_of_file)) return std::string(shown(Word::end_of_file));
+    std::string_view text = p.here().place.text();
+    text = text.substr(0, text.find('\n'));
+    if (text.size() <= longest) return fmt::format("'{}'", text);
+    std::size_t end = longest;
+    while ((text[end] & 0xC0) == 0x80) --end;  // within a character
+    return fmt::format("'{}...'", text.substr(0, end));
 }
 
 void skip_line(Parsing& p) {

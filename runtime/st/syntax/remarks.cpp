@@ -54,6 +54,17 @@ std::string_view attribute_value(const Tokens& tokens, std::size_t token, std::s
     return found ? between_quotes(found->place.text(), 1) : std::string_view();
 }
 
+std::string_view block_number(const Tokens& tokens, std::size_t token) {
+    for (const Pragma& pragma : tokens.pragmas) {
+        const std::string_view text = pragma.place.text();
+        const std::size_t at = pragma.before == token ? text.find("S7_BlockNumber") : text.npos;
+        const std::size_t begin = at == text.npos ? at : text.find('"', at);
+        const std::size_t end = begin == text.npos ? begin : text.find('"', begin + 1);
+        if (end != text.npos) return text.substr(begin + 1, end - begin - 1);
+    }
+    return {};
+}
+
 bool is_of_caller(const Tokens& tokens, std::size_t token) {
     return std::ranges::any_of(tokens.pragmas, [&](const Pragma& pragma) {
         return pragma.before == token && (says_pragma(pragma.place.text(), "callerfilepath") ||

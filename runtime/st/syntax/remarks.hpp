@@ -19,6 +19,9 @@ bool has_attribute(const Tokens& tokens, std::size_t token, std::string_view nam
 /// The value of `{attribute 'name' := 'value'}` there; empty without one.
 std::string_view attribute_value(const Tokens& tokens, std::size_t token, std::string_view name);
 
+/// 5 of `{S7_BlockNumber := "5"}`, which stands before it; empty without one.
+std::string_view block_number(const Tokens& tokens, std::size_t token);
+
 /// `{CallerFilePath}` or `{CallerLineNumber}` of SIMATIC AX stands before it.
 bool is_of_caller(const Tokens& tokens, std::size_t token);
 

@@ -156,6 +156,15 @@ struct Token {
     std::string_view text = {};  ///< of a name, a number, a text without its quotes
 };
 
+/// `ABS` of SCL is the instruction, `"ABS"` a block of the user's.
+inline bool is_instruction_name(const Token& name) {
+    return name.place.source && name.place.dialect().has_s7_instructions && !name.quoted &&
+           !name.local;
+}
+inline bool is_users_name(const Token& name) {
+    return name.place.source && name.place.dialect().has_s7_instructions && name.quoted;
+}
+
 /// Whether a name, or that of a token, is this one: `std::ranges::any_of(words, is_called(name))`.
 inline auto is_called(std::string_view name) {
     struct IsCalled {

@@ -296,6 +296,7 @@ struct Pou {
     bool is_configured = false;  ///< made of a PROGRAM for one that a CONFIGURATION has of it
     bool is_tests = false;  ///< a file of tests: SETUP, TEARDOWN and each TEST is a method of it
     Retention retention = Retention::unsaid;  ///< of a data block: of what its sections leave open
+    std::string_view number = {};  ///< of a data block: what `{S7_BlockNumber := "5"}` says
     std::vector<DeclarationBlock> blocks = {};
     Block body = {};
     Chart* chart = nullptr;  ///< instead of a body

@@ -74,6 +74,8 @@ void write_block(const std::filesystem::path& file, const Net& net) {
                                      {"x", "Int"},
                                      {"y", "Int"},
                                      {"z", "Int"},
+                                     {"t", "IEC_TIMER"},
+                                     {"pt", "Time"},
                                      {"list", "Array[0..9] of Int"},
                                      {"bits", "Array[0..9] of Bool"}})
         members += std::string("<Member Name=\"") + name + "\" Datatype=\"" + type + "\"/>";
@@ -149,6 +151,29 @@ TEST_CASE("inputs that count by their places do so by their names, in whatever o
 TEST_CASE("a jump has a label, and goes to it where power is") {
     CHECK(read(part("Jump"), {{"in", "power"}, {"label", "@M001"}}) ==
           "M001: ;\nIF #a THEN\nGOTO M001;\nEND_IF\n");
+    CHECK(read(part("JumpNot"), {{"in", "power"}, {"label", "@END"}}) ==
+          "\"END\": ;\nIF NOT #a THEN\nGOTO \"END\";\nEND_IF\n");
+}
+
+TEST_CASE("a block ends where power is, with an ENO that the coil says") {
+    for (const std::string coil : {"Return", "ReturnTrue"})
+        CHECK(read(part(coil), {{"in", "power"}}) == "IF #a THEN\nRETURN;\nEND_IF\n");
+    CHECK(read(part("ReturnFalse"), {{"in", "power"}}) ==
+          "IF #a THEN\nENO := FALSE;\nRETURN;\nEND_IF\n");
+}
+
+TEST_CASE("a timer may stand as a coil") {
+    CHECK(read(part("CoilTON"), {{"in", "power"}, {"operand", "t"}, {"value", "pt"}}) ==
+          "#t.TON(IN := #a, PT := #pt);\n");
+    CHECK(read(part("CoilTOF"), {{"value", "pt"}, {"operand", "t"}, {"in", "power"}}) ==
+          "#t.TOF(IN := #a, PT := #pt);\n");
+}
+
+TEST_CASE("Move goes by bits, S_Move is an assignment") {
+    CHECK(read(part("Move"), {{"en", "power"}, {"in", "x"}, {"out1", ">y"}}) ==
+          "IF #a THEN\n#y := MOVE(#x);\nEND_IF\n");
+    CHECK(read(part("S_Move"), {{"en", "power"}, {"in", "x"}, {"out", ">y"}}) ==
+          "IF #a THEN\n#y := #x;\nEND_IF\n");
 }
 
 TEST_CASE("a block whose name ends as that of a part is called as others are") {
@@ -168,9 +193,14 @@ TEST_CASE("blocks are moved, and rows of bits are set and reset") {
                {{"en", "power"}, {"in", "list[0]"}, {"count", "3"}, {"out", ">list[5]"}}) ==
           "IF #a THEN\nUMOVE_BLK(in := #list[0], count := 3, out => #list[5]);\nEND_IF\n");
     CHECK(read(part("SET_BF"), {{"en", "power"}, {"S_BIT", "bits[2]"}, {"COUNT", "3"}}) ==
-          "IF #a THEN\nFOR _bit1 := 0 TO 3 - 1 DO\n#bits[2 + _bit1] := TRUE;\nEND_FOR\nEND_IF\n");
+          "IF #a THEN\nFOR _bit1 := 0 TO MIN(3 - 1, UPPER_BOUND(#bits, 1) - (2)) DO\n"
+          "#bits[2 + _bit1] := TRUE;\nEND_FOR\nEND_IF\n");
+    const std::string reset =
+        "IF #a THEN\nFOR _bit1 := 0 TO MIN(#x - 1, UPPER_BOUND(#bits, 1) - (2)) DO\n"
+        "#bits[2 + _bit1] := FALSE;\nEND_FOR\nEND_IF\n";
     CHECK(read(part("RESET_BF"), {{"in", "power"}, {"operand", "bits[2]"}, {"count", "x"}}) ==
-          "IF #a THEN\nFOR _bit1 := 0 TO #x - 1 DO\n#bits[2 + _bit1] := FALSE;\nEND_FOR\nEND_IF\n");
+          reset);
+    CHECK(read(part("RBitfield"), {{"en", "power"}, {"operand", "bits[2]"}, {"n", "x"}}) == reset);
     CHECK_THAT(
         read(part("SET_BF"), {{"en", "power"}, {"S_BIT", "b"}, {"COUNT", "3"}}),
         Catch::EndsWith("SET_BF is supported from an element of an ARRAY of BOOL of one "

@@ -87,7 +87,7 @@ TEST_CASE("boxes do something where power is at them, and it goes on") {
                        "Add( in1 := #x, in2 := 2, in3 := #y, out => #z )")) ==
           "IF #a THEN\n#z := (#x + 2) + #y;\nEND_IF\n");
     CHECK(text_of(rung("Contact( #a ) Move( in := 3, out1 => #x, out2 => #y ) Coil( #b )")) ==
-          "_wire1 := #a;\nIF _wire1 THEN\n#x := 3;\n#y := 3;\nEND_IF\n#b := _wire1;\n");
+          "_wire1 := #a;\nIF _wire1 THEN\n#x := MOVE(3);\n#y := MOVE(3);\nEND_IF\n#b := _wire1;\n");
     CHECK(text_of(rung("{ S7_Templates := \"[SrcType := Real, DestType := Int]\" }\n"
                        "Convert( in := #r, out => #x )")) == "#x := REAL_TO_INT(#r);\n");
     CHECK(text_of(rung("Gt{ SrcType := Int }( IN1 := #x, IN2 := 6 ) Coil( #b )")) ==
@@ -135,7 +135,7 @@ TEST_CASE("ENO is that of the block that is called, or of a box that generates i
     CHECK(box("value_type := Int", "Limit( min := 0, in := #x, max := 9, out => #y )") ==
           "#y := LIMIT(EN := #a, MN := 0, IN := #x, MX := 9, ENO => _wire1);\n#b := _wire1;\n");
     CHECK(box("Card := 1", "Move( in := 3, out1 => #x )") ==
-          "_wire1 := #a;\nIF _wire1 THEN\n#x := 3;\nEND_IF\n#b := _wire1;\n");
+          "_wire1 := #a;\nIF _wire1 THEN\n#x := MOVE(3);\nEND_IF\n#b := _wire1;\n");
     CHECK(text_of(rung("Contact( #a ) ReturnFalse()")) ==
           "IF #a THEN\nENO := FALSE;\nRETURN;\nEND_IF\n");
 }
