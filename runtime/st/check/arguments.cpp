@@ -1,7 +1,9 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
+#include "runtime/st/check/declarations.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/references.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"
@@ -88,8 +90,12 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         output.type = type;
         return takes_outputs_as_assigned(value->place.dialect()) && may_become(c, output, given);
     };
+    const bool are_pointers =
+        value->place.dialect().is_loose && given.is_pointer() && type->is_pointer();
+    const bool is_of_own = parameter.section == Section::output && type->is_alias() &&
+                           type->element && same_type(given, *type->element);
     const bool fits =
-        same_type(given, *type) || derives || is_number ||
+        same_type(given, *type) || derives || is_number || are_pointers || is_of_own ||
         ((parameter.section == Section::output || type->kind == Kind::structure) &&
          has_same_form(c, value->place, *type, given)) ||
         (parameter.section == Section::in_out
@@ -103,6 +109,72 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                fmt::format("'{}' is {}, and {} is given", parameter.text, describe(*type),
                            describe(given)),
                help_of_given(*value, *type, texts));
+}
+
+/// It is a part of packed bytes, of a UNION, of the image, or of a standard block.
+bool is_in_bytes(const Expression& e) {
+    for (const Expression* at = &e; is_variable(*at); at = at->operands[0]) {
+        if (at->variable && at->variable->space == Space::image) return true;
+        if (at->kind != E::member && at->kind != E::index) return false;
+        const Type* of = at->operands[0]->type;
+        if (!of || of->kind == Kind::union_ || of->kind == Kind::standard) return true;
+    }
+    return false;
+}
+
+/// It may be given as a value.
+bool takes_copies(const Type& type) {
+    return (type.is_scalar() || type.kind == Kind::text) && !type.is_handle();
+}
+
+const Type& text_of(Checking& c, bool is_wide, std::size_t length) {
+    Type& made = c.make_type(Kind::text, is_wide ? "WSTRING" : "STRING");
+    made.length = static_cast<std::uint32_t>(length);
+    made.is_wide = is_wide;
+    return made;
+}
+
+/// What `value` is made as a VAR_IN_OUT CONSTANT of the type.
+const Type& lent_as(Checking& c, const Expression& value, const Type& type) {
+    constexpr std::size_t longest = 255;  // that a standard function gives
+    if (!type.is_open) return type;
+    const bool is_alike = value.type->kind == Kind::text && value.type->is_wide == type.is_wide;
+    const bool is_variable = is_alike && (value.kind != E::call || value.routine);
+    return is_variable ? *value.type : text_of(c, type.is_wide, longest);
+}
+
+/// A variable that stays, with the constant.
+Variable& keep_constant(Checking& c, Expression& constant, const Type& type) {
+    const bool is_text = type.kind == Kind::text;
+    Variable& kept =
+        c.make_variable(constant.token, {},
+                        is_text ? &text_of(c, type.is_wide, constant.constant.text.size()) : &type);
+    kept.initial = &constant;
+    kept.used = true;
+    keep_once(c, kept);
+    return kept;
+}
+
+/// A value that a VAR_IN_OUT CONSTANT is given stands in a variable, to which that refers: a
+/// constant in one that stays, what is computed in one of the call.
+void lend_value(Checking& c, Argument& argument, const Variable& parameter) {
+    Expression*& value = argument.value;
+    const Type& type = lent_as(c, *value, *parameter.type);
+    if (!coerce(c, value, type)) return;
+    if (is_constant(*value) && takes_copies(type)) {
+        value = make_use(c, *value, keep_constant(c, *value, type));
+        return;
+    }
+    depend(c, &type, value->place);
+    if (!c.routine) {  // what a global variable begins with
+        argument.made = &c.make_variable(value->token, {}, &type);
+        argument.made->used = true;
+        return keep_once(c, *argument.made);
+    }
+    const std::string& name = c.checked.names.emplace_back(fmt::format("%{}", parameter.text));
+    argument.made = &c.make_variable(*c.routine, value->token, name, &type);
+    argument.made->section = Section::temp;
+    c.routine->lends = true;
 }
 
 }  // namespace
@@ -149,7 +221,14 @@ void check_argument(Checking& c, Argument& argument, Variable& parameter) {
                                          (is_own_input(*value) || is_lent(*value)));
     const bool is_taken = argument.is_output || is_output || is_copied_in_out(parameter);
     const bool is_place = is_variable(*value) || (is_taken && value->kind == E::bit);
-    if (is_constant && !is_place) return void(coerce(c, value, type->is_open ? *given : *type));
+    const auto has_its_form = [&] {
+        return same_type(*given, *type) ||
+               (value->place.dialect().enumerations_are_numbers && is_kept_as(*given, *type)) ||
+               (type->is_open && given->kind == Kind::text && given->is_wide == type->is_wide);
+    };
+    const auto is_seen_whole = [&] { return has_its_form() && !is_in_bytes(*value); };
+    if (is_constant && (!is_place || (takes_copies(*type) && !is_seen_whole())))
+        return lend_value(c, argument, parameter);
     if (!is_place || (!is_read && !check_target(c, *value, "given here"))) {
         if (!is_place)
             c.fail(code::wrong_arguments, value->place,

@@ -128,7 +128,7 @@ void add_constructor_of_base(Checking& c, const Routine& method, Block& to) {
     const Expression like = like_name(method.pou->name, method.pou->place);
     std::vector<Argument> given;
     for (const Variable& input : of_base->variables)
-        if (input.section == Section::input)
+        if (input.section == Section::input || input.section == Section::in_out)
             given.push_back({.name = input.name, .value = make_name(c, like, input.text)});
     Expression* super = make_name(c, like, "super");
     to.push_back(make_call_statement(

@@ -113,16 +113,12 @@ void declare_bounds(Checking& c, Routine& routine, Variable& array) {
     }
 }
 
-/// A VAR_IN_OUT CONSTANT takes values, too: one that is no structure is an input.
-bool takes_values(const DeclarationBlock& block, const Type* type) {
-    const bool is_value = type && (type->is_scalar() || type->kind == Kind::text);
-    return block.section == Section::in_out && block.constant && is_value && !type->is_handle();
-}
-
-const Type& longer_string(Checking& c, bool is_wide) {
-    Type& type = c.make_type(Kind::text, is_wide ? "WSTRING[255]" : "STRING[255]");
-    type.length = 255;
-    type.is_wide = is_wide;
+/// A VAR_IN_OUT CONSTANT takes a text of any length; SIZEOF is that of the type.
+const Type& open_text(Checking& c, const Type& text) {
+    Type& type = c.make_type(Kind::text, text.name);
+    type.length = text.length;
+    type.is_wide = text.is_wide;
+    type.is_open = true;
     return type;
 }
 
@@ -168,21 +164,21 @@ Meant meaning_of(Checking& c, const Routine& routine, const DeclarationBlock& bl
                           (block.section == Section::output && !routine.has_instances());
     const Type* type = declared_type(c, declared.type, is_given);
     const bool is_pointed_at = is_given && type && is_variant(*type);
-    const bool is_value = takes_values(block, type) || is_pointed_at;
-    const Section section = is_value ? Section::input : block.section;
+    const Section section = is_pointed_at ? Section::input : block.section;
     const Place place = declared.name.place;
     const bool is_wide = type == &unsized_wide_string(place) && type->is_wide;
     const bool is_unsized = is_wide || type == &unsized_string(place.dialect());
-    if (is_value && is_unsized) type = &longer_string(c, is_wide);
-    const bool is_text_of_br =
-        type && type->kind == Kind::text && place.dialect().in_outs_take_any_text;
-    if (section == Section::in_out && (is_unsized || is_text_of_br))
+    const bool is_text = type && type->kind == Kind::text;
+    const bool is_text_of_br = is_text && place.dialect().in_outs_take_any_text;
+    if (section == Section::in_out && is_text && block.constant)
+        type = &open_text(c, *type);
+    else if (section == Section::in_out && (is_unsized || is_text_of_br))
         type = type->is_wide ? &open_wide_string_type : &open_string_type;
     const bool is_of_own = is_its_own_block(c, routine, type);
     return {.declared = declared,
             .type = type,
             .section = section,
-            .constant = block.constant && !is_value,
+            .constant = block.constant && !is_pointed_at,
             .is_of_own = is_of_own,
             .is_another = is_of_own && (section == Section::local || section == Section::temp)};
 }
@@ -242,8 +238,9 @@ void check_instances(Checking& c, const Routine& routine, const Variable& variab
     if (is_lent || (variable.space == Space::frame && (!is_of_test || is_array)))
         refuse_object(c, meant.declared, type);
     if (!is_lent) refuse_abstract(c, type, meant.place());
-    const bool is_only_named = (meant.is_of_own && (is_lent || meant.is_another)) ||
-                               (routine.is_prototype() && type && type->kind == Kind::block);
+    const bool is_only_named =
+        (meant.is_of_own && (is_lent || meant.is_another || meant.section == Section::output)) ||
+        (routine.is_prototype() && type && type->kind == Kind::block);
     if (!is_only_named) depend(c, type, meant.place());
 }
 
@@ -275,6 +272,8 @@ void declare(Checking& c, Routine& routine, const DeclarationBlock& block) {
         Variable& variable = make_variable(c, routine, block, meant);
         give_name(c, routine, variable, meant);
         check_instances(c, routine, variable, meant);
+        if (meant.is_of_own && meant.section == Section::output)
+            give_own_instance(c, routine, variable);
         give_place(c, routine, variable, meant);
         complete(c, routine, variable, meant);
     }
@@ -346,7 +345,8 @@ void make_constant(Checking& c, Variable& variable) {
         c.fail(code::wrong_place, variable.name.place,
                "an instance changes when it is called, so it is no constant",
                "declare it in VAR, without CONSTANT");
-    if (!variable.type || !variable.type->is_scalar()) return;
+    if (!variable.type || !variable.type->is_scalar() || variable.section == Section::in_out)
+        return;
     variable.space = Space::constant;
     if (!variable.initial) {
         variable.value = variable.type->initial;

@@ -216,8 +216,14 @@ bool is_of_dynamic_memory(std::string_view function) {
     return same_name(function, "__new") || same_name(function, "__delete");
 }
 
+bool is_new(const Expression& value) {
+    return value.kind == E::call && value.operands[0]->kind == E::name &&
+           same_name(value.operands[0]->token.text, "__new");
+}
+
 bool rewrite_new(Checking& c, Statement*& s) {
-    if (s->kind != S::assign || s->op != Word::assign || !is_call_of(*s, "__new")) return false;
+    if (s->kind != S::assign || s->op != Word::assign) return false;
+    if (!s->value || !is_new(*s->value)) return false;
     Expression& call = *s->value;
     const Type* type = resolve(c, *call.of);
     if (!type) return check(c, s->target), true;

@@ -6,6 +6,8 @@ namespace lineshaft::st {
 
 /// `__NEW` or `__DELETE`, as users write it.
 bool is_of_dynamic_memory(std::string_view function);
+/// A call of `__NEW`.
+bool is_new(const Expression& value);
 /// `p := __NEW(Type, count);` of CODESYS becomes statements: what it makes are elements of a
 /// global array of the type, of which `pool_size` are had.
 bool rewrite_new(Checking& c, Statement*& s);

@@ -2,6 +2,7 @@
 
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/declarations.hpp"
+#include "runtime/st/check/dynamic_memory.hpp"
 #include "runtime/st/check/expressions.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/namespaces.hpp"
@@ -427,6 +428,7 @@ void check_initial(Checking& c, Expression*& value, const Type& type) {
         value->token.word = type.kind == Kind::array ? Word::open_bracket : Word::open;
         return check_initial(c, value, type);
     }
+    if (is_new(*value) && begin_with(c, value, type)) return;
     if (!check(c, value, &type)) return;
     evaluate(c, value);
     if (!coerce(c, value, type)) return;

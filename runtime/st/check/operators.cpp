@@ -77,15 +77,17 @@ void check_masks(Checking& c, Expression& e, const Type* expected) {
     }
 }
 
-/// In CODESYS an enumeration's value is its number to a sign and to what works on bits, too.
-void take_number_of_enumeration(Checking& c, Expression*& operand) {
-    if (operand->place.dialect().enumerations_are_numbers && !operand->type->is_strict)
+/// In CODESYS an enumeration's value is its number to a sign and to what works on bits, too;
+/// 'strict' forbids the sign alone.
+void take_number_of_enumeration(Checking& c, Expression*& operand, bool may_be_strict) {
+    if (operand->place.dialect().enumerations_are_numbers &&
+        (may_be_strict || !operand->type->is_strict))
         enumeration_becomes_number(c, operand);
 }
 
 const Type* check_logic(Checking& c, Expression*& e) {
     for (Expression*& operand : e->operands)
-        if (operand) take_number_of_enumeration(c, operand);
+        if (operand) take_number_of_enumeration(c, operand, true);
     const auto is_truth = [](const Expression* o) { return o->type->kind == Kind::boolean; };
     const bool of_truths = std::ranges::any_of(e->operands, is_truth);
     if (!of_truths) reinterpret(c, *e, Kind::integer);
@@ -342,7 +344,7 @@ const Type* check_unary(Checking& c, Expression*& e, const Type* expected) {
     Expression*& operand = e->operands[0];
     const Type* type = check(c, operand, expected);
     if (!type) return nullptr;
-    take_number_of_enumeration(c, operand);
+    take_number_of_enumeration(c, operand, e->op == Word::not_);
     if (e->op == Word::not_ && !take_width_of_result(c, operand, expected)) return nullptr;
     reinterpret(c, *e, e->op == Word::not_ ? Kind::integer : Kind::bits, expected);
     if (e->op == Word::minus) take_sign(c, operand);

@@ -214,7 +214,7 @@ const Type* check_index(Checking& c, Expression*& node) {
         if (is_constant(*argument.value)) {
             const Wide lower = of_text ? (e.place.dialect().texts_are_bytes ? 0 : 1) : type->lower,
                        upper = of_text ? type->length : type->upper;
-            if (value < lower || value > upper)
+            if (value < lower || (value > upper && !type->is_open))
                 return c.fail(code::value_out_of_range, argument.value->place,
                               fmt::format("there is no element {}", to_string(value)),
                               fmt::format("the index goes from {} to {}", to_string(lower),

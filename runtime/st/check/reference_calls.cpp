@@ -61,22 +61,11 @@ const Type* check_refer(Checking& c, Expression*& e, Referring referring) {
     return e->type;
 }
 
-/// VAR_IN_OUT CONSTANT, which values are given to, too.
-bool is_constant_in_out(const Variable& variable) {
-    if (!variable.of) return false;
-    const auto is_this = [&](const Declaration* declared) {
-        return same_name(declared->name.text, variable.text);
-    };
-    return std::ranges::any_of(variable.of->blocks, [&](const DeclarationBlock& block) {
-        return block.section == Section::in_out && block.constant &&
-               std::ranges::any_of(block.declarations, is_this);
-    });
-}
-
 const Type* check_is_bound(Checking& c, Expression*& e) {
     Expression*& given = e->arguments[0].value;
     if (!check(c, given)) return nullptr;
-    if (given->kind == E::name && given->variable && is_constant_in_out(*given->variable))
+    const bool is_name = given->kind == E::name && given->variable;
+    if (is_name && given->variable->section == Section::in_out && given->variable->constant)
         return become(c, e, bool_type, {.integer = 1});
     Expression* reference = without_alias(given);
     const bool is_own = given->kind == E::member && given->operands[0]->kind == E::self;

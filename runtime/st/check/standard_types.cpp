@@ -245,8 +245,20 @@ const Type* check_reals(Checking& c, Expression*& e, const Type* expected) {
 void take_numbers_of_enumerations(Checking& c, Expression& call) {
     if (!call.place.dialect().enumerations_are_numbers) return;
     for (Argument& argument : call.arguments)
-        if (argument.value->type->kind == Kind::enumeration && !argument.value->type->is_strict)
+        if (argument.value->type->kind == Kind::enumeration)
             enumeration_becomes_number(c, argument.value);
+}
+
+/// The enumeration with 'strict' that all arguments are of, which takes no number; null: there is
+/// none.
+const Type* strict_of_all(const Expression& call) {
+    const Type& first = *call.arguments[0].value->type;
+    const auto is_it = [&](const Argument& argument) {
+        return same_type(*argument.value->type, first);
+    };
+    const bool is_strict =
+        first.kind == Kind::enumeration && first.is_strict && has_table_for(first);
+    return is_strict && std::ranges::all_of(call.arguments, is_it) ? &first : nullptr;
 }
 
 bool is_text(const Argument& argument) {
@@ -258,12 +270,17 @@ const Type* check_common(Checking& c, Expression*& e, const Type* expected) {
     const Generic result = call.standard->result;
     if (result == Generic::any_elementary && std::ranges::all_of(call.arguments, is_text))
         return check_extreme_text(c, e);
+    const Type* strict = result == Generic::any_elementary ? strict_of_all(call) : nullptr;
     if (result == Generic::any_elementary) take_numbers_of_enumerations(c, call);
-    const Type* type = unite_from(c, call, 0, expected);
+    const Type* type = unite_from(c, call, 0, strict ? nullptr : expected);
     const bool takes_bits = result == Generic::any_ordered || result == Generic::any_elementary;
     const bool suits = !type || result == Generic::any || type->is_number() || type->is_time() ||
                        (takes_bits && type->kind == Kind::bits);
-    return suits ? take_back(c, e, type, expected) : refuse(c, call, "numbers", *type);
+    if (!suits) return refuse(c, call, "numbers", *type);
+    const Type* chosen = take_back(c, e, type, strict ? nullptr : expected);
+    if (!chosen || !strict) return chosen;
+    e->type = chosen;
+    return convert(c, e, *strict);
 }
 
 /// MUX of a number that none has: CODESYS gives the last, MatIEC what the type begins with.

@@ -34,7 +34,7 @@ void advance_time(Writing& w, Slot by) {
     w.put(Op::min_signed, step, left, w.constant_slot(1'000'000));
     w.put(Op::advance_time, 0, step, step);
     for (const Variable* object : objects)
-        w.put(Op::call_block_at, address_of(w, locate_global(w, *object)),
+        w.put(Op::call_block_at, address_of(w, locate_variable(w, *object)),
               w.standard_number(*object->type->standard));
     w.put(Op::sub_lint, left, left, step);
     w.put(Op::repeat, 0, 0, start);
@@ -155,9 +155,9 @@ void write_test_statement(Writing& w, const Expression& e) {
         }
         case TestCall::mock_function: {
             const Routine& function = *e.routine;
-            assign(w, locate_global(w, *function.mock_value), *function.mock_value->type,
+            assign(w, locate_variable(w, *function.mock_value), *function.mock_value->type,
                    *e.arguments[1].value);
-            return store(w, locate_global(w, *function.mock_flag), w.constant_slot(1));
+            return store(w, locate_variable(w, *function.mock_flag), w.constant_slot(1));
         }
         case TestCall::mock_verify_called:
         case TestCall::mock_verify_call_count: {
@@ -204,11 +204,11 @@ void begin_mockable(Writing& w, const Routine& routine) {
     if (w.has_tests && routine.has_instances() && !routine.pou->is_tests)
         count_call(w, {Mode::slot, error_slot}, runs);
     if (routine.mock_flag)
-        w.jump(Op::jump_unless, 0, load(w, locate_global(w, *routine.mock_flag)), runs);
+        w.jump(Op::jump_unless, 0, load(w, locate_variable(w, *routine.mock_flag)), runs);
     if (runs.empty()) return;
     if (routine.mock_flag) {
         const Variable& result = *routine.result;
-        const Location from = locate_global(w, *routine.mock_value);
+        const Location from = locate_variable(w, *routine.mock_value);
         if (result.type->is_scalar())
             store(w, {Mode::slot, result.slot}, load(w, from));
         else

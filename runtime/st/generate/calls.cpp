@@ -57,32 +57,39 @@ bool is_in_bytes(const Location& at) {
     return at.byte || (at.packed && at.packed->through == none);
 }
 
-/// What VAR_IN_OUT CONSTANT is given.
-Location kept(Writing& w, const Expression& value) {
-    const Location made{Mode::slot, w.new_temporary(slots_of(w, *value.type))};
-    assign(w, made, *value.type, value);
+/// A value that VAR_IN_OUT CONSTANT is given, where it has a variable.
+Location made_for_call(Writing& w, const Argument& given) {
+    const Location made = locate_variable(w, *given.made);
+    assign(w, made, *given.made->type, *given.value);
     return made;
 }
 
-/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. It is a copy
-/// of what is no slot of its own, which is referred to by nothing: ADR of that VAR_IN_OUT is NULL.
-void refer(Writing& w, const Location& to, const Variable& variable, const Expression& value,
-           std::vector<Later>& later, std::vector<Lent>& lent) {
-    const bool is_value = value.kind == E::call || value.kind == E::converted;
-    Location at = is_value ? kept(w, value) : locate(w, value);
-    const bool is_lent = is_value || is_in_bytes(at);
-    if (is_lent && !is_value) {
-        if (at.mode != Mode::slot) at = as_address(w, at);
-        lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, *value.type))}, value.type});
-        write(w, lent.back().copy, at, *value.type);
-        at = lent.back().copy;
-    }
+/// A copy of what is no slot of its own, which is written back behind the call.
+Location lend(Writing& w, Location at, const Type& type, std::vector<Lent>& lent) {
+    if (at.mode != Mode::slot) at = as_address(w, at);
+    lent.push_back({at, {Mode::slot, w.new_temporary(slots_of(w, type))}, &type});
+    write(w, lent.back().copy, at, type);
+    return lent.back().copy;
+}
+
+/// Where the value of a VAR_IN_OUT is, and what it holds if any length may be given. What has a
+/// copy is referred to by nothing: ADR of that VAR_IN_OUT is NULL.
+void refer(Writing& w, const Location& to, const Argument& argument, std::vector<Later>& later,
+           std::vector<Lent>& lent) {
+    const Variable& variable = *argument.variable;
+    const Expression& value = *argument.value;
+    const Type& type = argument.made ? *argument.made->type : *value.type;
+    Location at = argument.made ? made_for_call(w, argument) : locate(w, value);
+    const bool is_lent = is_in_bytes(at);
+    if (is_lent) at = lend(w, at, type, lent);
     later.push_back({to, address_of(w, at), 0, true});
-    if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, *value.type)});
+    if (variable.type->is_open) later.push_back({behind(to, 1), capacity_of(w, at, type)});
     if (!w.checked.refers_to_in_outs) return;
     const Location reference = behind(to, variable.type->is_open ? 2 : 1);
     if (is_lent)
         later.push_back({reference, w.constant_slot(0)});
+    else if (argument.made)
+        later.push_back({reference, reference_to(w, *argument.made), reference_slots});
     else
         later.push_back({reference, reference_to(w, value), reference_slots});
 }
@@ -116,7 +123,7 @@ void give_left_out(Writing& w, const Location& frame, const Expression& e) {
         w.jump(Op::jump_if, 0, load(w, reference), given);
         std::vector<Later> later;
         std::vector<Lent> lent;  // what stands for it is a variable of its own
-        refer(w, reference, *argument.variable, *argument.value, later, lent);
+        refer(w, reference, argument, later, lent);
         give(w, later);
         w.land(given);
     }
@@ -183,7 +190,7 @@ std::vector<Lent> give(Writing& w, const Location& frame, const Expression& e,
         const Type& type = *variable.type;
         const Location to = parameter(w, frame, e, variable);
         if (variable.space == Space::reference) {
-            refer(w, to, variable, *argument.value, later, lent);
+            refer(w, to, argument, later, lent);
         } else if (is_copied_in_out(variable)) {
             const Location at = nested ? Location{Mode::slot, w.new_temporary()} : to;
             lent.push_back(give_copy(w, at, variable, *argument.value));
@@ -240,7 +247,9 @@ void take(Writing& w, const Location& frame, const Expression& e, const std::vec
             continue;
         }
         const Location to = locate(w, *argument.value);
-        if (given.kind == Kind::text && to.packed)
+        if (given.is_alias() && wanted.kind == Kind::block)
+            copy_value(w, to, locate_instance(w, from, wanted), wanted);
+        else if (given.kind == Kind::text && to.packed)
             store_packed_text(w, to, address_of(w, from));
         else if (given.kind == Kind::text)
             w.put(Op::text_copy, address_of(w, to), address_of(w, from),

@@ -150,8 +150,8 @@ Generated generate(Checked& checked, Diagnostics& out, const CodeOptions& option
     finish_dispatch(w);
     for (const Global& global : w.checked.globals)
         if (is_list(global)) lay_out_members(w, *global.type, true);
-    if (!w.out.empty()) return {};
     finish_late(w);
+    if (!w.out.empty()) return {};
     for (const Global& global : w.checked.globals) {
         Writing::Image image(slots_of(w, *global.type), 0);
         fill_default(w, image, 0, *global.type);

@@ -206,7 +206,7 @@ void assign(Writing& w, const Location& to, const Type& type, const Expression& 
     store(w, to, value(w, from));
 }
 
-Location locate_global(Writing& w, const Variable& variable) {
+Location locate_variable(Writing& w, const Variable& variable) {
     Expression name;
     name.kind = Expression::Kind::name;
     name.variable = const_cast<Variable*>(&variable);

@@ -30,7 +30,7 @@ struct Location {
 using Mode = Location::Mode;
 
 Location locate(Writing& w, const Expression& e);
-Location locate_global(Writing& w, const Variable& variable);
+Location locate_variable(Writing& w, const Variable& variable);
 Location part(Writing& w, Location of, const Variable& member);
 /// The element of the array at `of` that `e` indexes.
 Location element(Writing& w, Location of, const Expression& e);
@@ -67,8 +67,12 @@ void assign(Writing& w, const Location& to, const Type& type, const Expression& 
 Slot reference(Writing& w, const Expression& e);
 /// That of where `place` is.
 Slot reference_to(Writing& w, const Expression& place);
+/// That of a variable of the routine that is written.
+Slot reference_to(Writing& w, const Variable& variable);
 /// What `e^` is.
 Location locate_target(Writing& w, const Expression& e);
+/// The instance that the reference at `from` is to.
+Location locate_instance(Writing& w, const Location& from, const Type& instance);
 /// `e` is an element of an array that a reference is to and that is not seen by bytes.
 bool is_element_of_target(const Expression& e);
 /// There may be fewer elements of that array than its type says.

@@ -133,18 +133,21 @@ Slot refer_to_image(Writing& w, const Variable& variable) {
     return made;
 }
 
+Slot refer_to_piece(Writing& w, const Location& at, ByteOfPiece to, bool ends) {
+    const Slot made = w.new_temporary(reference_slots);
+    w.put(Op::lasting, made, address_of(w, at));
+    w.put(Op::move, made + 1, w.constant_slot(to.word()));
+    w.put(Op::move, made + 2, ends ? w.routine->activation : w.constant_slot(0));
+    return made;
+}
+
 Slot refer_to_variable(Writing& w, const Expression& root) {
     const Variable* variable = root.variable;
     if (is_in_image(variable)) return refer_to_image(w, *variable);
     const Location at = locate(w, root);
-    const Slot address = address_of(w, at.byte ? behind(at, *at.byte / 8) : at);
-    const Slot made = w.new_temporary(reference_slots);
-    w.put(Op::lasting, made, address);
-    const ByteOfPiece to = variable ? piece_of(w, *variable) : piece_of(w, *root.type);
-    w.put(Op::move, made + 1, w.constant_slot(to.word()));
-    const bool ends = variable && variable->ends_with_call();
-    w.put(Op::move, made + 2, ends ? w.routine->activation : w.constant_slot(0));
-    return made;
+    return refer_to_piece(w, at.byte ? behind(at, *at.byte / 8) : at,
+                          variable ? piece_of(w, *variable) : piece_of(w, *root.type),
+                          variable && variable->ends_with_call());
 }
 
 /// How many bytes an index of an ARRAY[*] is behind the first one of its dimension.
@@ -329,6 +332,11 @@ Slot reference_to(Writing& w, const Expression& place) {
     return refer_to_part(w, refer_to_variable(w, root), place, root);
 }
 
+Slot reference_to(Writing& w, const Variable& variable) {
+    return refer_to_piece(w, locate_variable(w, variable), piece_of(w, variable),
+                          variable.ends_with_call());
+}
+
 Location locate_target(Writing& w, const Expression& e) {
     if (!is_growing(w, *e.type))
         slots_of(w, *e.type);  // lays it out: nothing else of its type may be there yet
@@ -341,6 +349,11 @@ Location locate_target(Writing& w, const Expression& e) {
     const Slot from = reference(w, pointer);
     if (has_bytes(*e.type)) return locate_through(from, *e.type, iec);
     return {Mode::address, 0, w.emit(Op::reach, none, from, shape_number(w, *e.type))};
+}
+
+Location locate_instance(Writing& w, const Location& from, const Type& instance) {
+    const Slot reference = from.mode == Mode::slot ? from.slot : copied(w, from);
+    return {Mode::address, 0, w.emit(Op::reach, none, reference, shape_number(w, instance))};
 }
 
 bool is_element_of_target(const Expression& e) {

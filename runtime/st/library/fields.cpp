@@ -385,7 +385,7 @@ void write_fields(Library::Made& made, KindContext& kind, const Global& global) 
                 fields.write(*variable, 0, {}, Direction::local);
     }
     for (const Variable* member : global.type->members)
-        if (member != made.checked.numbers) fields.write_member(*member);
+        if (member != made.checked.numbers && !member->text.empty()) fields.write_member(*member);
 }
 
 }  // namespace lineshaft::st

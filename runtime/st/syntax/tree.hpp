@@ -33,6 +33,7 @@ struct Argument {
     Variable* variable = nullptr;  ///< that it goes to or comes from, noted by the checker
     bool is_left_out = false;      ///< in a test: taken only if nothing was given before
     bool is_negated = false;       ///< `NOT q => x`
+    Variable* made = nullptr;      ///< that has `value` in the call, of VAR_IN_OUT CONSTANT
 
     bool is_named() const { return name.word != Word::end_of_file; }
 };

@@ -32,7 +32,7 @@ std::uint64_t bytes_of_block(const Type& type) {
     const bool has_methods = block.pou->name.place.dialect().blocks_begin_with_methods;
     std::uint64_t bits = 8 * (block.base ? bytes_of(*block.base->type) : has_methods ? 8U : 0U);
     for (const Variable& variable : block.variables)
-        if (variable.type && variable.space == Space::frame)
+        if (variable.type && variable.space == Space::frame && variable.section != Section::temp)
             bits = end_behind(bits, *variable.type, type);
     block.is_measured = false;
     return rounded_up(std::max<std::uint64_t>(whole_bytes(bits), 1), alignment_of(type));
