@@ -50,7 +50,7 @@ bool is_called_alone(const Type& type, const Place& place) {
 
 void check_action(Checking& c, Statement*& s) {
     Expression* name = s->value;
-    if (name->kind == E::index || !find_action(c, *name)) {
+    if (name->kind == E::index || name->kind == E::bit || !find_action(c, *name)) {
         Expression* instance = make_copy(c, *name);
         const Type* type = check(c, s->value);
         if (type && is_called_alone(*type, s->place)) {

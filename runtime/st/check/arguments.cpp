@@ -79,6 +79,11 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
                                        describe(given)),
                            "take the output as it is"));
     const bool texts = given.kind == Kind::text && type->kind == Kind::text;
+    const Dialect& dialect = value->place.dialect();
+    const bool are_arrays = given.kind == Kind::array && type->kind == Kind::array;
+    const bool has_other_bounds = are_arrays && given.count() == type->count() && given.element &&
+                                  type->element && same_type(*given.element, *type->element) &&
+                                  takes_what_others_refuse(dialect) && !dialect.is_loose;
     const bool derives = parameter.section == Section::in_out && is_derived(given, *type);
     const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
                           type->is_integer() && given.is_integer();  // of a date: any integer
@@ -99,7 +104,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         ((parameter.section == Section::output || type->kind == Kind::structure) &&
          has_same_form(c, value->place, *type, given)) ||
         (parameter.section == Section::in_out
-             ? texts && type->is_open
+             ? has_other_bounds || (texts && type->is_open)
              : texts || is_split ||
                    (type->is_scalar() &&
                     (widens(*type, given) || are_same_pattern(*type, given) || becomes())));

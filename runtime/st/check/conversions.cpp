@@ -223,7 +223,8 @@ bool coerce_constant(Checking& c, Expression*& e, const Type& to) {
     }
     if (!whole) return refuse_conversion(c, *e, to);
     const bool bit = to.kind == Kind::boolean && (value == 0 || value == 1);
-    const bool no_time = to.kind == Kind::time && value == 0;
+    const bool no_time = value == 0 && (to.kind == Kind::time ||
+                                        (to.is_date() && e->place.dialect().seconds_move_moments));
     if (to.is_any() || bit || no_time) return take_type(c, e, to, e->constant);
     if (counts_ms(*e, to)) return take_type(c, e, to, {.integer = value * 1'000'000});
     if (to.kind != Kind::integer && to.kind != Kind::bits) return refuse_conversion(c, *e, to);

@@ -390,10 +390,12 @@ void collect_names(Checking& c) {
                               is_overload(*pou, first, all.overloads, full_name.text);
         const bool is_beside = first && (is_folder(*pou) || is_folder(*first->pou));
         if (is_beside && !is_folder(*pou)) all.routines.erase(full_name.text);
-        const bool added = is_beside
-                               ? !is_folder(*pou)
-                               : !is_other && !is_told_by_capitals(c, full_name, all.places) &&
-                                     is_new_name(c, full_name, all.places);
+        const bool is_beside_type = is_folder(*pou) && all.types.contains(full_name.text);
+        const bool added =
+            is_beside_type ||
+            (is_beside ? !is_folder(*pou)
+                       : !is_other && !is_told_by_capitals(c, full_name, all.places) &&
+                             is_new_name(c, full_name, all.places));
         if (pou->kind == PouKind::data_block) continue;
         Routine& routine = c.make_routine(*pou, std::string(full_name.text));
         if (added) all.routines.emplace(full_name.text, &routine);

@@ -84,16 +84,22 @@ const Type* fail_member(Checking& c, const Expression& e, const Type& type, std:
                   fmt::format("{} has no '{}'", describe(type), name), suggest(name, names));
 }
 
-/// CODESYS: `status.READY`, the bit of a constant's number. Null: it is none, and nothing told.
+/// CODESYS, B&R: `status.READY`, the bit of a constant's number, of B&R also of an enumeration's.
+/// Null: it is none, and nothing told.
 const Type* check_named_bit(Checking& c, Expression*& e, const Type& type) {
     const bool has_bits = type.kind == Kind::bits || type.kind == Kind::integer;
-    if (!has_bits || !e->place.dialect().is_loose || e->operands[0]->kind == E::bit) return nullptr;
+    const Dialect& dialect = e->place.dialect();
+    if (!has_bits || !takes_what_others_refuse(dialect) || e->operands[0]->kind == E::bit)
+        return nullptr;
     const Variable* number = find_variable(c, e->token);
-    if (!number || number->space != Space::constant) return nullptr;
-    if (!number->type->is_integer() && !number->type->is_bits()) return nullptr;
-    const Wide bit = number->value.integer;
+    const bool is_number = number && number->space == Space::constant && number->type &&
+                           (number->type->is_integer() || number->type->is_bits());
+    const NamedValue* value =
+        number || dialect.is_loose ? nullptr : c.look_up(&Names::values, e->token);
+    if (!is_number && !value) return nullptr;
+    const Wide bit = is_number ? number->value.integer : Wide{value->type->numbers[value->index]};
     if (bit < 0 || bit >= type.bits) return nullptr;
-    c.note(e->token.place, *number);
+    if (is_number) c.note(e->token.place, *number);
     e = make_bit(c, *e, e->operands[0]);
     e->bits = {static_cast<std::uint8_t>(bit), 1};
     return &bool_type;

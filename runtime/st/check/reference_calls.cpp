@@ -113,6 +113,9 @@ const Type* check_memory(Checking& c, Expression& call, const Type* expected) {
         Expression*& value = call.arguments[i].value;
         if (f.parameter(i).type == Generic::pointer) {
             if (value->type->is_pointer()) continue;
+            if (value->type->is_any() && value->place.dialect().seconds_move_moments)
+                coerce(c, value, integer_type(32, false));
+            if (!value->type) return nullptr;
             if (holds_address(*value->type)) {
                 coerce(c, value, pointer_to(c, bits_type(8)));
                 continue;

@@ -61,16 +61,26 @@ std::string_view why_no_place(const Expression& e, bool is_pointer) {
     return {};
 }
 
+/// That of its variable, as no source has one.
+std::string_view name_of_literal(Checking& c, const Routine& routine) {
+    return c.checked.names.emplace_back(
+        fmt::format("{} literal {}", routine.name, c.checked.variables.size()));
+}
+
 /// A constant scalar that a POINTER TO is to point at, or a text, stands in its block once more, as
-/// a variable.
+/// a variable. A text of a call stays when that has ended.
 void keep_constant(Checking& c, Expression*& e) {
     const bool is_text = !e->variable && e->type->kind == Kind::text;
     if (e->kind != E::constant || (!e->variable && !is_text)) return;
     Routine* routine = c.routine;
     while (routine && !is_text && routine->pou != e->variable->of) routine = routine->owner;
     if (!routine) return;
-    Variable& kept =
-        c.make_variable(*routine, e->token, is_text ? e->token.text : e->variable->text, e->type);
+    const bool is_static = is_text && !routine->has_instances() && !routine->is_test();
+    Variable& kept = is_static
+                         ? c.make_variable(e->token, name_of_literal(c, *routine), e->type)
+                         : c.make_variable(*routine, e->token,
+                                           is_text ? e->token.text : e->variable->text, e->type);
+    if (is_static) keep_once(c, kept);
     kept.initial = is_text ? e : e->variable->initial;
     e = make_use(c, *e, kept);
 }

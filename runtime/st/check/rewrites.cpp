@@ -192,8 +192,9 @@ bool rewrite(Checking& c, Statement*& s) {
     const StandardFunction* special = nullptr;
     if (callee.kind == E::name) {
         const StandardFunction* standard = find_standard_function(callee.token.text);
-        const bool is_known =
-            find_variable(c, callee.token) || routine || callee.token.quoted || callee.token.local;
+        const bool is_known = find_variable(c, callee.token) || routine ||
+                              block_with_method(c, callee.token) || callee.token.quoted ||
+                              callee.token.local;
         if (s->kind == S::call && standard && !is_known && standard->typing == Typing::statement)
             special = standard;
     }

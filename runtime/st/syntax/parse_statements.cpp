@@ -71,8 +71,8 @@ void parse_access_statement(Parsing& p, Expression* target, Block& to) {
 /// A part of Invocation: a value alone names an action, `a;`, or is a mistake.
 void parse_value_alone(Parsing& p, Expression* value, Block& to) {
     using Kind = Expression::Kind;
-    const bool is_place =
-        value->kind == Kind::name || value->kind == Kind::member || value->kind == Kind::index;
+    const bool is_place = value->kind == Kind::name || value->kind == Kind::member ||
+                          value->kind == Kind::index || value->kind == Kind::bit;
     if (!is_place || !p.is(Word::semicolon)) return refuse_value(p, *value);
     to.push_back(p.make(Statement::Kind::action, value));
     p.take();
@@ -327,6 +327,14 @@ void parse_structured(Parsing& p, Statement::Kind kind, Block& to,
     p.accept(Word::semicolon);
 }
 
+/// A variable called Network, which is written or called.
+bool at_variable_network(const Parsing& p) {
+    using enum Word;
+    static constexpr Word behind[] = {assign, plus_assign,  minus_assign, set_assign, reset_assign,
+                                      open,   open_bracket, dot,          caret};
+    return !p.next().first_in_line && std::ranges::find(behind, p.next().word) != std::end(behind);
+}
+
 /// Stmt : ';' | Region
 ///      | ( IF_Stmt | Case_Stmt | For_Stmt | While_Stmt | Repeat_Stmt | Try_Stmt ) ';' ?
 ///      | Jump_Stmt | Goto_Stmt | Label | Simple_Stmt | Test_Stmt
@@ -341,8 +349,7 @@ void parse_statement(Parsing& p, Block& to) {
         case Word::semicolon:
             return void(p.take());
         case Word::network_:
-            if (p.next().word == Word::assign) return parse_simple(p, to);
-            return parse_region(p);
+            return at_variable_network(p) ? parse_simple(p, to) : parse_region(p);
         case Word::region_:
         case Word::end_region_:
         case Word::end_network_:
@@ -375,6 +382,29 @@ void parse_statement(Parsing& p, Block& to) {
     }
 }
 
+/// The name stands before a ':' or ',' or behind ACTION, METHOD or FUNCTION somewhere.
+bool is_declared_somewhere(const Parsing& p, std::string_view name) {
+    for (std::size_t i = 1; i + 1 < p.tokens.size(); ++i) {
+        if (p.tokens[i].word != Word::name || !same_name(p.tokens[i].text, name)) continue;
+        const Word before = p.tokens[i - 1].word, behind = p.tokens[i + 1].word;
+        if (before == Word::action_ || before == Word::method_ || before == Word::function_ ||
+            behind == Word::colon || behind == Word::comma)
+            return true;
+    }
+    return false;
+}
+
+/// A name that is not declared is meant as a word, one that ends with ';' as one that may.
+bool respell_statement(Parsing& p) {
+    using enum Word;
+    static constexpr Word alone[] = {exit_,       return_,       continue_,           end_if_,
+                                     end_case_,   end_for_,      end_while_,          end_repeat_,
+                                     end_region_, end_function_, end_function_block_, end_program_,
+                                     end_method_};
+    if (p.next().word != semicolon) return respell(p, statement_words);
+    return !is_declared_somewhere(p, p.here().text) && respell(p, alone);
+}
+
 }  // namespace
 
 /// Stmt_List : Stmt *
@@ -383,7 +413,7 @@ void parse_statements(Parsing& p, Block& to, Word end, bool in_case) {
     while (!p.panic && !p.is(end) && !at_end_of_statements(p) &&
            !(in_case ? p.at_label() : at_label_of_case(p))) {
         if (p.at_chart() || p.at_end_of_step()) break;
-        if (at_doomed_name(p) && !p.at_test_statement() && respell(p, statement_words)) continue;
+        if (at_doomed_name(p) && !p.at_test_statement() && respell_statement(p)) continue;
         const std::size_t before = p.at, statements = to.size();
         parse_statement(p, to);
         if (p.panic) {
