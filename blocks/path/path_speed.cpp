@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks/path/path_speed_limits.hpp"
+
 namespace lineshaft {
 
-namespace {
+using namespace speed_limits;
 
-constexpr double no_limit = 1e200;
+namespace {
 
 typedef double Sides [[gnu::vector_size(16)]];
 constexpr Sides signs{1, -1};
@@ -16,85 +18,13 @@ double both(const Sides& sides) {
     return sides[0] + sides[1];
 }
 
-/// A direction in the plane of a corner.
-struct Across {
-    double cosine, sine;
-
-    double part(const PathVector& x, const std::array<PathVector, 2>& plane) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < path_space; ++i)
-            sum += x[i] * (cosine * plane[0][i] + sine * plane[1][i]);
-        return sum;
-    }
-};
-
-/// The limits of the path hold for the whole vector in a corner: a polygon of 16 sides within the
-/// circle.
-constexpr double c1 = 0.9238795325112867, c2 = 0.7071067811865476, c3 = 0.3826834323650898;
-constexpr Across polygon[] = {{1, 0}, {c1, c3},  {c2, c2},  {c3, c1},
-                              {0, 1}, {-c3, c1}, {-c2, c2}, {-c1, c3}};
-constexpr double polygon_share = 0.9807852804032304;  ///< cos(pi/16)
-
-/// Calls `use(tangent, bend, twist, limit)` for all that is bounded by a limit of one kind.
-template <class Use>
-void each_bounded(const SpeedInterval& here, const PathPoint& x, double PathLimit::*of,
-                  const Use& use) {
-    if (here.kind == PathCurveKind::line) return use(1, 0, 0, here.along.*of);
-    const double path = here.limits->path.*of;
-    use(1, 0, 0, path);
-    if (here.kind == PathCurveKind::corner && path < no_limit)
-        for (const Across& side : polygon)
-            use(side.part(x.tangent, here.plane), side.part(x.bend, here.plane),
-                side.part(x.twist, here.plane), polygon_share * path);
-    for (std::size_t i = 0; i < most_path_axes; ++i)
-        if (x.tangent[i] != 0 || x.bend[i] != 0 || x.twist[i] != 0)
-            use(x.tangent[i], x.bend[i], x.twist[i], here.limits->axes[i].*of);
+Sides greater_of(const Sides& a, const Sides& b) {
+    return b > a ? b : a;
 }
 
-/// What is left of the velocity at a point where all limits of acceleration are kept.
-double fastest_at(const SpeedInterval& here, const PathPoint& x) {
-    const double v = here.along.velocity, A = here.limits->path.acceleration;
-    double energy = 0.5 * v * v;
-    each_bounded(
-        here, x, &PathLimit::acceleration, [&](double tangent, double bend, double, double limit) {
-            if (bend != 0)
-                energy = std::min(energy, (limit + std::abs(tangent) * A) / (2 * std::abs(bend)));
-        });
-    return std::sqrt(2 * energy);
-}
-
-/// A part of the limits that are left when they have been tightened.
-constexpr double tightened = 0.8;
-
-/// Calls `use(tangent, bend, limit)` for all accelerations that the others do not keep small.
-template <class Use>
-void each_acceleration(const SpeedInterval& here, const PathPoint& x, const Use& use) {
-    const double A = here.limits->path.acceleration, v = fastest_at(here, x);
-    bool is_first = true;
-    each_bounded(here, x, &PathLimit::acceleration,
-                 [&](double tangent, double bend, double, double limit) {
-                     const double most = std::abs(tangent) * A + std::abs(bend) * v * v;
-                     if (limit < no_limit && (is_first || !(most < tightened * limit)))
-                         use(tangent, bend, limit);
-                     is_first = false;
-                 });
-}
-
-/// Likewise with the twist for all jerks.
-template <class Use>
-void each_jerk(const SpeedInterval& here, const PathPoint& x, const Use& use) {
-    const PathLimit& path = here.limits->path;
-    const double v = fastest_at(here, x);
-    bool is_first = true;
-    each_bounded(here, x, &PathLimit::jerk,
-                 [&](double tangent, double bend, double twist, double limit) {
-                     const double most = std::abs(tangent) * path.jerk +
-                                         3 * std::abs(bend) * v * path.acceleration +
-                                         std::abs(twist) * v * v * v;
-                     if (limit < no_limit && (is_first || !(most < tightened * limit)))
-                         use(tangent, bend, twist, limit);
-                     is_first = false;
-                 });
+bool is_below_0(const Sides& a, const Sides& b) {
+    const Sides less = b < a ? b : a;
+    return less[0] < 0 || less[1] < 0;
 }
 
 }  // namespace
@@ -227,12 +157,6 @@ void SpeedProblem::begin_again() {
         }
 }
 
-/// The values of k - 1, k and k + 1; 0 for those that are not there.
-SpeedProblem::Triple SpeedProblem::around(const std::array<double, most_speed_intervals>& values,
-                                          std::size_t k) const {
-    return {k > 0 ? values[k - 1] : 0, values[k], k + 1 < n ? values[k + 1] : 0};
-}
-
 /// The gradient of the sum of the intervals' times, and the diagonal of its second derivatives.
 void SpeedProblem::begin_bands() {
     diagonal.fill(0), next.fill(0), second.fill(0);
@@ -248,56 +172,80 @@ void SpeedProblem::begin_bands() {
 /// The matrix of the linear equations, and their right side for the step towards 0.
 void SpeedProblem::assemble() {
     begin_bands();
-    for (std::size_t k = 0; k < n; ++k)
-        for (const Group& group : groups[k]) {
-            if (group.first == group.end) continue;
-            const double falls = group.falls / group.scale;
-            Sides xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, px{}, py{}, pz{};
-            for (std::size_t r = group.first; r < group.end; ++r) {
-                const Row& row = rows[r];
-                Dual& dual = duals[r];
-                dual.inverse = 1 / dual.slack;
-                const Sides f = dual.weight * dual.inverse;
-                const Sides pull = f * (row.value - 1 + dual.slack);
-                const Sides x = row.slope, y = row.rise, z = row.energy + falls;
-                const Sides fx = f * x, fy = f * y;
-                xx += fx * x, xy += fx * y, xz += fx * z;
-                yy += fy * y, yz += fy * z, zz += f * z * z;
-                px += pull * x, py += pull * y, pz += pull * z;
-            }
-            add_squares(k, group, {both(xx), both(xy), both(xz), both(yy), both(yz), both(zz)});
-            add_pulls(k, group, {both(px), both(py), both(pz)});
-        }
+    for (std::size_t k = 0; k < n; ++k) {
+        assemble<at_node>(k);
+        assemble<in_middle>(k);
+        assemble<at_left>(k);
+        assemble<at_right>(k);
+    }
 }
 
-/// A group's, in terms of w'', w' and w.
+template <SpeedProblem::Place place>
+void SpeedProblem::assemble(std::size_t k) {
+    const Group& group = groups[k][place];
+    if (group.first == group.end) return;
+    const double falls = group.falls / group.scale;
+    Sides xx{}, xy{}, xz{}, yy{}, yz{}, zz{}, px{}, py{}, pz{};
+    for (std::size_t r = group.first; r < group.end; ++r) {
+        const Row& row = rows[r];
+        Dual& dual = duals[r];
+        dual.inverse = 1 / dual.slack;
+        const Sides f = dual.weight * dual.inverse;
+        const Sides pull = f * (row.value - 1 + dual.slack);
+        const Sides x = row.slope, y = row.rise, z = row.energy + falls;
+        const Sides fx = f * x, fy = f * y;
+        if constexpr (place == at_left || place == at_right) {
+            xx += fx * x, xy += fx * y, xz += fx * z;
+            px += pull * x;
+        }
+        if constexpr (place != in_middle) {
+            yy += fy * y, yz += fy * z;
+            py += pull * y;
+        }
+        zz += f * z * z;
+        pz += pull * z;
+    }
+    add_squares<place>(k, group, {both(xx), both(xy), both(xz), both(yy), both(yz), both(zz)});
+    add_pulls<place>(k, group, {both(px), both(py), both(pz)});
+}
+
+/// A group's, in terms of w'', w' and w: of those of b[k-1], b[k] and b[k+1] that it knows.
+template <SpeedProblem::Place place>
 void SpeedProblem::add_squares(std::size_t k, const Group& group, const Squares& sums) {
+    constexpr bool knows_slope = place == at_left || place == at_right;
+    constexpr bool knows_before = place == at_node || knows_slope, knows_behind = knows_slope;
     const double f = group.scale * group.scale;
     const auto& [xx, xy, xz, yy, yz, zz] = sums;
     const Triple &x = group.slope, &y = group.rise, &z = group.energy;
-    Triple mx, my, mz;
-    for (std::size_t i = 0; i < 3; ++i) {
-        mx[i] = f * (xx * x[i] + xy * y[i] + xz * z[i]);
-        my[i] = f * (xy * x[i] + yy * y[i] + yz * z[i]);
+    Triple mx{}, my{}, mz{};
+    for (std::size_t i = knows_before ? 0 : 1; i < (knows_behind ? 3 : 2); ++i) {
+        if constexpr (knows_slope) mx[i] = f * (xx * x[i] + xy * y[i] + xz * z[i]);
+        if constexpr (place != in_middle) my[i] = f * (xy * x[i] + yy * y[i] + yz * z[i]);
         mz[i] = f * (xz * x[i] + yz * y[i] + zz * z[i]);
     }
     const auto product = [&](std::size_t i, std::size_t j) {
+        if constexpr (place == in_middle) return z[i] * mz[j];
+        if constexpr (place == at_node) return y[i] * my[j] + z[i] * mz[j];
         return x[i] * mx[j] + y[i] * my[j] + z[i] * mz[j];
     };
     diagonal[k] += product(1, 1);
-    if (k > 0) diagonal[k - 1] += product(0, 0), next[k - 1] += product(0, 1);
-    if (k + 1 < n) diagonal[k + 1] += product(2, 2), next[k] += product(1, 2);
-    if (k > 0 && k + 1 < n) second[k - 1] += product(0, 2);
+    if (knows_before && k > 0) diagonal[k - 1] += product(0, 0), next[k - 1] += product(0, 1);
+    if (knows_behind && k + 1 < n) diagonal[k + 1] += product(2, 2), next[k] += product(1, 2);
+    if (knows_behind && k > 0 && k + 1 < n) second[k - 1] += product(0, 2);
 }
 
+template <SpeedProblem::Place place>
 void SpeedProblem::add_pulls(std::size_t k, const Group& group, const Triple& sums) {
+    constexpr bool knows_slope = place == at_left || place == at_right;
     const auto pull = [&](std::size_t i) {
-        return group.scale *
-               (sums[0] * group.slope[i] + sums[1] * group.rise[i] + sums[2] * group.energy[i]);
+        double sum = 0;
+        if constexpr (knows_slope) sum = sums[0] * group.slope[i];
+        if constexpr (place != in_middle) sum += sums[1] * group.rise[i];
+        return group.scale * (sum + sums[2] * group.energy[i]);
     };
     right[k] -= pull(1);
-    if (k > 0) right[k - 1] -= pull(0);
-    if (k + 1 < n) right[k + 1] -= pull(2);
+    if (place != in_middle && k > 0) right[k - 1] -= pull(0);
+    if (knows_slope && k + 1 < n) right[k + 1] -= pull(2);
 }
 
 /// Five bands become L D L^T; both ends stay.
@@ -324,22 +272,30 @@ bool SpeedProblem::factor() {
 /// what the product of their own changes came to in the step towards 0.
 void SpeedProblem::correct(double target) {
     right = least_time;
-    for (std::size_t k = 0; k < n; ++k)
-        for (const Group& group : groups[k]) {
-            if (group.first == group.end) continue;
-            const double falls = group.falls / group.scale;
-            Sides px{}, py{}, pz{};
-            for (std::size_t r = group.first; r < group.end; ++r) {
-                const Row& row = rows[r];
-                const Dual& dual = duals[r];
-                const Sides off = row.value - 1 + dual.slack;
-                const Sides pull = (target - dual.product + dual.weight * off) * dual.inverse;
-                px += pull * row.slope;
-                py += pull * row.rise;
-                pz += pull * (row.energy + falls);
-            }
-            add_pulls(k, group, {both(px), both(py), both(pz)});
-        }
+    for (std::size_t k = 0; k < n; ++k) {
+        correct<at_node>(k, target);
+        correct<in_middle>(k, target);
+        correct<at_left>(k, target);
+        correct<at_right>(k, target);
+    }
+}
+
+template <SpeedProblem::Place place>
+void SpeedProblem::correct(std::size_t k, double target) {
+    const Group& group = groups[k][place];
+    if (group.first == group.end) return;
+    const double falls = group.falls / group.scale;
+    Sides px{}, py{}, pz{};
+    for (std::size_t r = group.first; r < group.end; ++r) {
+        const Row& row = rows[r];
+        const Dual& dual = duals[r];
+        const Sides off = row.value - 1 + dual.slack;
+        const Sides pull = (target - dual.product + dual.weight * off) * dual.inverse;
+        if constexpr (place == at_left || place == at_right) px += pull * row.slope;
+        if constexpr (place != in_middle) py += pull * row.rise;
+        pz += pull * (row.energy + falls);
+    }
+    add_pulls<place>(k, group, {both(px), both(py), both(pz)});
 }
 
 void SpeedProblem::solve_bands() {
@@ -359,46 +315,57 @@ void SpeedProblem::solve_bands() {
 /// What the step does to slacks and multipliers, and how far along it they and w stay above 0.
 template <bool corrects>
 SpeedProblem::Parts SpeedProblem::find_changes(double target) {
-    constexpr double nearly = 0.985, least_energy = 0.2;
+    constexpr double least_energy = 0.2;
     Parts out;
-    for (std::size_t k = 0; k < n; ++k)
-        for (const Group& group : groups[k]) {
-            const Triple steps = around(step, k);
-            const auto along = [&](const Triple& g) {
-                return g[0] * steps[0] + g[1] * steps[1] + g[2] * steps[2];
-            };
-            const double x = group.scale * along(group.slope), y = group.scale * along(group.rise);
-            const double w = along(group.energy), z = group.scale * w, fall = group.falls * w;
-            for (std::size_t r = group.first; r < group.end; ++r) {
-                const Row& row = rows[r];
-                Dual& dual = duals[r];
-                const Sides by = row.value + row.slope * x + row.rise * y + row.energy * z;
-                const Sides slack = dual.slack, weight = dual.weight;
-                const Sides ds = 1 - fall - slack - by;
-                const Sides wanted = corrects ? target - dual.product : Sides{};
-                const Sides dw = (wanted - weight * (slack + ds)) * dual.inverse;
-                const Sides left = nearly * slack + out.primal * ds;
-                const Sides rest = nearly * weight + out.dual * dw;
-                for (const int side : {0, 1}) {
-                    if (left[side] < 0)
-                        out.primal = std::min(out.primal, -nearly * slack[side] / ds[side]);
-                    if (rest[side] < 0)
-                        out.dual = std::min(out.dual, -nearly * weight[side] / dw[side]);
-                }
-                dual.slack_change = ds;
-                dual.weight_change = dw;
-                if constexpr (!corrects) {
-                    dual.product = ds * dw;
-                    out.by_slack += ds * weight;
-                    out.by_weight += slack * dw;
-                    out.by_both += dual.product;
-                }
-            }
-        }
+    for (std::size_t k = 0; k < n; ++k) {
+        find_changes<corrects, at_node>(k, target, out);
+        find_changes<corrects, in_middle>(k, target, out);
+        find_changes<corrects, at_left>(k, target, out);
+        find_changes<corrects, at_right>(k, target, out);
+    }
     for (std::size_t k = 1; k + 1 < n; ++k)
         if (out.primal * step[k] < (least_energy - 1) * b[k])
             out.primal = (least_energy - 1) * b[k] / step[k];
     return out;
+}
+
+template <bool corrects, SpeedProblem::Place place>
+void SpeedProblem::find_changes(std::size_t k, double target, Parts& out) {
+    constexpr double nearly = 0.985;
+    const Group& group = groups[k][place];
+    if (group.first == group.end) return;
+    const double before = k > 0 ? step[k - 1] : 0, behind = k + 1 < n ? step[k + 1] : 0;
+    const auto along = [&](const Triple& g) {
+        return g[0] * before + g[1] * step[k] + g[2] * behind;
+    };
+    const double x = place == at_left || place == at_right ? group.scale * along(group.slope) : 0;
+    const double y = place != in_middle ? group.scale * along(group.rise) : 0;
+    const double w = place != in_middle ? along(group.energy) : step[k];
+    const double z = group.scale * w, fall = group.falls * w;
+    for (std::size_t r = group.first; r < group.end; ++r) {
+        const Row& row = rows[r];
+        Dual& dual = duals[r];
+        Sides by = row.value;
+        if constexpr (place == at_left || place == at_right) by += row.slope * x;
+        if constexpr (place != in_middle) by += row.rise * y;
+        by += row.energy * z;
+        const Sides slack = dual.slack, weight = dual.weight;
+        const Sides ds = 1 - fall - slack - by;
+        const Sides wanted = corrects ? target - dual.product : Sides{};
+        const Sides dw = (wanted - weight * (slack + ds)) * dual.inverse;
+        const Sides left = nearly * slack + out.primal * ds;
+        const Sides rest = nearly * weight + out.dual * dw;
+        if (is_below_0(left, rest)) [[unlikely]]
+            out.shorten(nearly * slack, ds, nearly * weight, dw);
+        dual.slack_change = ds;
+        dual.weight_change = dw;
+        if constexpr (!corrects) {
+            dual.product = ds * dw;
+            out.by_slack += ds * weight;
+            out.by_weight += slack * dw;
+            out.by_both += dual.product;
+        }
+    }
 }
 
 /// Mehrotra's target: the better the step towards 0 would be, the nearer.
@@ -410,25 +377,28 @@ double SpeedProblem::look_ahead(double now) {
     return share * share * share * now;
 }
 
-void SpeedProblem::go(const Parts& part) {
-    for (std::size_t r = 0; r < count; ++r) {
-        duals[r].slack += part.primal * duals[r].slack_change;
-        duals[r].weight += part.dual * duals[r].weight_change;
-    }
+SpeedProblem::Progress SpeedProblem::go(const Parts& part) {
     for (std::size_t k = 1; k + 1 < n; ++k) b[k] += part.primal * step[k];
     find_nodes();
     renew_rows();
+    Sides gap{}, residual{};
+    for (std::size_t r = 0; r < count; ++r) {
+        Dual& dual = duals[r];
+        dual.slack += part.primal * dual.slack_change;
+        dual.weight += part.dual * dual.weight_change;
+        gap += dual.slack * dual.weight;
+        residual = greater_of(residual, rows[r].value - 1 + dual.slack);
+    }
+    return {both(gap), std::max(residual[0], residual[1])};
 }
 
 SpeedProblem::Progress SpeedProblem::progress() const {
-    Sides gap{};
-    double residual = 0;
+    Sides gap{}, residual{};
     for (std::size_t r = 0; r < count; ++r) {
-        const Sides slack = duals[r].slack, off = rows[r].value - 1 + slack;
-        gap += slack * duals[r].weight;
-        residual = std::max({residual, off[0], off[1]});
+        gap += duals[r].slack * duals[r].weight;
+        residual = greater_of(residual, rows[r].value - 1 + duals[r].slack);
     }
-    return {both(gap), residual};
+    return {both(gap), std::max(residual[0], residual[1])};
 }
 
 /// What is next to the greatest velocity along a way is run along with exactly that.
@@ -451,8 +421,8 @@ bool SpeedProblem::iterate() {
     constexpr int most_steps = 32, soon = 14, most_idle = 2;
     double first = 1;
     int idle = 0;
+    Progress now = progress();
     for (int tries = 0; tries < most_steps; ++tries) {
-        const Progress now = progress();
         if (now.gap < near && now.residual < nearly_kept) return true;
         if (tries == 0) first = std::max(first, now.gap);
         if (now.gap > beyond * first || idle == most_idle || (tries >= soon && now.gap > hopeless))
@@ -466,7 +436,7 @@ bool SpeedProblem::iterate() {
         solve_bands();
         const Parts part = find_changes<true>(target);
         idle = part.primal < hardly && now.residual > far_off ? idle + 1 : 0;
-        go(part);
+        now = go(part);
     }
     return false;
 }

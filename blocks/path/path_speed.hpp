@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -77,6 +78,16 @@ class SpeedProblem {
     struct Parts {
         double primal = 1, dual = 1;
         Sides by_slack{}, by_weight{}, by_both{};
+
+        /// So that what changes by ds and dw does not fall below 0.
+        void shorten(const Sides& slack, const Sides& ds, const Sides& weight, const Sides& dw) {
+            for (const int side : {0, 1}) {
+                if (slack[side] + primal * ds[side] < 0)
+                    primal = std::min(primal, -slack[side] / ds[side]);
+                if (weight[side] + dual * dw[side] < 0)
+                    dual = std::min(dual, -weight[side] / dw[side]);
+            }
+        }
     };
 
     /// How far from the least time and from the limits.
@@ -117,19 +128,26 @@ class SpeedProblem {
     void begin_again();
     void begin_bands();
     void assemble();
+    template <Place place>
+    void assemble(std::size_t k);
+    template <Place place>
     void add_squares(std::size_t k, const Group& group, const Squares& sums);
+    template <Place place>
     void add_pulls(std::size_t k, const Group& group, const Triple& sums);
     bool factor();
     void correct(double target);
+    template <Place place>
+    void correct(std::size_t k, double target);
     void solve_bands();
     template <bool corrects>
     Parts find_changes(double target);
+    template <bool corrects, Place place>
+    void find_changes(std::size_t k, double target, Parts& out);
     double look_ahead(double now);
-    void go(const Parts& part);
+    Progress go(const Parts& part);
     Progress progress() const;
     void settle();
     bool iterate();
-    Triple around(const std::array<double, most_speed_intervals>& values, std::size_t k) const;
 };
 
 }  // namespace lineshaft
