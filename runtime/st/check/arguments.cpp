@@ -83,7 +83,7 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
     const bool are_arrays = given.kind == Kind::array && type->kind == Kind::array;
     const bool has_other_bounds = are_arrays && given.count() == type->count() && given.element &&
                                   type->element && same_type(*given.element, *type->element) &&
-                                  takes_what_others_refuse(dialect) && !dialect.is_loose;
+                                  dialect.takes_what_others_refuse && !dialect.is_loose;
     const bool derives = parameter.section == Section::in_out && is_derived(given, *type);
     const bool is_split = parameter.of && parameter.of->place.source->is_prelude() &&
                           type->is_integer() && given.is_integer();  // of a date: any integer

@@ -89,7 +89,7 @@ const Type* fail_member(Checking& c, const Expression& e, const Type& type, std:
 const Type* check_named_bit(Checking& c, Expression*& e, const Type& type) {
     const bool has_bits = type.kind == Kind::bits || type.kind == Kind::integer;
     const Dialect& dialect = e->place.dialect();
-    if (!has_bits || !takes_what_others_refuse(dialect) || e->operands[0]->kind == E::bit)
+    if (!has_bits || !dialect.takes_what_others_refuse || e->operands[0]->kind == E::bit)
         return nullptr;
     const Variable* number = find_variable(c, e->token);
     const bool is_number = number && number->space == Space::constant && number->type &&
