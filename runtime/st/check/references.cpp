@@ -174,7 +174,10 @@ bool bind(Checking& c, Expression*& e, const Type& to) {
     const bool are_arrays = dialect.references_take_numbers && from.kind == Kind::array &&
                             to.element->kind == Kind::array &&
                             same_type(*from.element, *to.element->element);
-    if (!are_texts && !are_arrays && !is_target(to, from)) return refuse_target(c, *e, to, from);
+    const bool are_pointers =
+        e->place.dialect().is_loose && from.is_pointer() && to.element->is_pointer();
+    if (!are_texts && !are_arrays && !are_pointers && !is_target(to, from))
+        return refuse_target(c, *e, to, from);
     return refer(c, e, to);
 }
 

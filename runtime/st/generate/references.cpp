@@ -412,10 +412,12 @@ Slot address_number(Writing& w, const Expression& e) {
     return made;
 }
 
-/// TIME and LTIME are alike but for their bytes.
+/// TIME and LTIME are alike but for their bytes, and pointers whatever they are to.
 std::uint32_t shape_number(Writing& w, const Type& type, bool is_s7) {
     const auto is_same = [&](const Shape& shape) {
-        return shape.is_s7 == is_s7 && !shape.byte && same_type(*shape.type, type) &&
+        const bool are_pointers = shape.type->is_pointer() && type.is_pointer();
+        return shape.is_s7 == is_s7 && !shape.byte &&
+               (are_pointers || same_type(*shape.type, type)) &&
                bytes_of(*shape.type) == bytes_of(type);
     };
     const auto it = std::ranges::find_if(w.code.shapes, is_same);
