@@ -347,6 +347,9 @@ bool append_transition(Path& path, std::span<PathPiece> ring, const Next& next, 
     const std::size_t count =
         spline_between(before.at(before.length - round.far), next.curve.at(round.far), curves);
     if (count == 0 || count > boxes.size()) return false;
+    const PathLimits both = round.limits;
+    for (std::size_t i = 0; i < count; ++i)
+        round.limits.path = least_of(round.limits.path, limits_on(curves[i], both).path);
     for (std::size_t i = 0; i < count; ++i) boxes[i] = box_of(curves[i], round.limits);
     round.curves = {curves.data(), count};
     round.boxes = {boxes.data(), count};
@@ -403,17 +406,18 @@ PathFault Path::append(std::span<PathPiece> ring, const PathCurve& curve, const 
     for (std::size_t i = 0; i < most_path_axes; ++i) {
         if (curve.moves(i) && !is_good(limits.axes[i])) return PathFault::limit_not_positive;
     }
-    const PathLimit box = box_of(curve, limits);
+    const PathLimits along = limits_on(curve, limits);
+    const PathLimit box = box_of(curve, along);
     if (!is_good(box)) return PathFault::not_finite;
     double velocity = 0;
     if (count > first) {
         const PathCurve& before = piece_at(ring, count - 1).curve;
         if (!is_joined(before, curve)) return PathFault::not_joined;
-        if (joint.distance > 0 && append_round(*this, ring, {curve, box, limits}, joint))
+        if (joint.distance > 0 && append_round(*this, ring, {curve, box, along}, joint))
             return PathFault::none;
         if (is_smooth(before, curve)) velocity = joint.velocity;
     }
-    append_piece(*this, ring, curve, limits, box, velocity);
+    append_piece(*this, ring, curve, along, box, velocity);
     return PathFault::none;
 }
 

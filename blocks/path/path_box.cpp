@@ -223,6 +223,20 @@ PathLimits limits_between(const PathLimits& before, const PathLimits& after, Pat
     return out;
 }
 
+PathLimits limits_on(const PathCurve& curve, const PathLimits& limits) {
+    constexpr int places = 64;
+    constexpr double even = 1 + 4e-4;
+    PathLimits out = limits;
+    if (curve.kind != PathCurveKind::spline) return out;
+    double most = 1;
+    for (int k = 0; k <= places; ++k) {
+        const PathVector tangent = curve.at(curve.length * k / places).tangent;
+        most = std::max(most, std::hypot(tangent[0], tangent[1], tangent[2]));
+    }
+    if (most > even) out.path.velocity /= most;
+    return out;
+}
+
 double corner_distance_at(double velocity, const PathCurve& before, const PathCurve& after,
                           const PathLimits& limits) {
     double distance = 0;

@@ -30,6 +30,10 @@ PathLimit least_of(const PathLimit& a, const PathLimit& b);
 /// Where a joint is rounded; of each axis the lesser.
 PathLimits limits_between(const PathLimits& before, const PathLimits& after, PathBlend blend);
 
+/// Those of the motion along a curve: where the length of a spline's tangent is not 1, so that the
+/// way in space is run along faster, the velocity is as much lower.
+PathLimits limits_on(const PathCurve& curve, const PathLimits& limits);
+
 /// The box of a line or an arc: while 0 <= s' <= velocity, |s''| <= acceleration and |s'''| <= jerk
 /// all limits are kept (README.md, "Why no limit is passed").
 PathLimit box_of(const PathCurve& curve, const PathLimits& limits);

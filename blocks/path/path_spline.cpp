@@ -251,18 +251,25 @@ PathPoint point_at(const PathCurve& c, double t) {
 
 /// Parts one behind the other, each as long as it is even, whatever the curve turns by. Around a
 /// cusp, where they would be shorter than `shortest`, the curve is led into the cusp and out of it
-/// as along its chords: a stop.
+/// as along its chords: a stop, where there may be one.
 class Walk {
   public:
-    Walk(const PathCurve& curve, double least, std::span<PathCurve, most_spline_parts> parts)
-        : whole(curve), shortest(least), out(parts) {}
+    struct Wish {
+        double most_uneven = 0;
+        double shortest = 0;  ///< as a part of the curve's parameter
+        bool may_stop = false;
+    };
+
+    Walk(const PathCurve& curve, const Wish& parts_are,
+         std::span<PathCurve, most_spline_parts> parts)
+        : whole(curve), wish(parts_are), out(parts) {}
 
     /// How many there are; 0 where there would be too many.
     std::size_t all();
 
   private:
     const PathCurve& whole;
-    double shortest;  ///< as a part of the curve's parameter
+    Wish wish;
     std::span<PathCurve, most_spline_parts> out;
     std::size_t count = 0;
     double at = 0;
@@ -276,7 +283,7 @@ class Walk {
 
 bool Walk::is_even(double width) {
     out[count] = part(whole, at, width);
-    return out[count].length > 0 && unevenness(out[count]) <= as_even_as_can_be;
+    return out[count].length > 0 && unevenness(out[count]) <= wish.most_uneven;
 }
 
 /// How wide the part from here on may be; 0 where that is less than the shortest.
@@ -287,7 +294,7 @@ double Walk::longest() {
     while (!is_even(width)) {
         most = width;
         width *= 0.5;
-        if (width < shortest) return 0;
+        if (width < wish.shortest) return 0;
     }
     for (int step = 0; step < steps; ++step) {
         const double middle = 0.5 * (width + most);
@@ -301,7 +308,7 @@ double Walk::longest() {
 double Walk::slowest() const {
     constexpr double reach = 4;
     constexpr int steps = 40;
-    double a = at, b = std::min(1.0, at + reach * shortest);
+    double a = at, b = std::min(1.0, at + reach * wish.shortest);
     for (int step = 0; step < steps; ++step) {
         const double c = a + (b - a) / 3, d = b - (b - a) / 3;
         (pace_at(whole, c).speed > pace_at(whole, d).speed ? a : b) =
@@ -323,14 +330,14 @@ bool Walk::add(const PathPoint& from, const PathPoint& to) {
 
 bool Walk::pass_cusp() {
     double cusp = slowest();
-    if (cusp - at < 0.25 * shortest) cusp = at;
-    if (1 - cusp < 0.25 * shortest) cusp = 1;
+    if (cusp - at < 0.25 * wish.shortest) cusp = at;
+    if (1 - cusp < 0.25 * wish.shortest) cusp = 1;
     const PathVector tip = point_at(whole, cusp).position;
     if (cusp > at) {
         const PathPoint from = point_at(whole, at);
         if (!add(from, waypoint(from.position, tip, tip))) return false;
     }
-    at = 1 - cusp < 3 * shortest ? 1 : cusp + 2 * shortest;
+    at = 1 - cusp < 3 * wish.shortest ? 1 : cusp + 2 * wish.shortest;
     if (cusp == 1) return true;
     const PathPoint to = point_at(whole, at);
     return add(waypoint(tip, tip, to.position), to);
@@ -342,19 +349,27 @@ std::size_t Walk::all() {
         if (const double width = longest(); width > 0) {
             at = width == 1 - at ? 1 : at + width;
             ++count;
-        } else if (!pass_cusp()) {
+        } else if (!wish.may_stop || !pass_cusp()) {
             return 0;
         }
     }
     return count;
 }
 
-/// Into parts as even as 1e-4, or where these do not suffice as they can be.
+/// Into parts as even as 1e-4, or where these do not suffice as they can be: each as long as it may
+/// be before they are less even than that.
 std::size_t divided(const PathCurve& whole, std::span<PathCurve, most_spline_parts> out) {
-    for (const double most_uneven : {1e-4, 4e-4, 2e-3, as_even_as_can_be})
+    constexpr double even = 4e-4;
+    constexpr Walk::Wish without_stop{even, 1e-6, false};
+    for (const double most_uneven : {1e-4, even})
+        if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
+    if (const std::size_t count = Walk(whole, without_stop, out).all(); count > 0) return count;
+    for (const double most_uneven : {2e-3, as_even_as_can_be})
         if (const std::size_t count = divide(whole, most_uneven, out); count > 0) return count;
     for (const double shortest : {1e-4, 1e-3, 1e-2})
-        if (const std::size_t count = Walk(whole, shortest, out).all(); count > 0) return count;
+        if (const std::size_t count = Walk(whole, {as_even_as_can_be, shortest, true}, out).all();
+            count > 0)
+            return count;
     return 0;
 }
 

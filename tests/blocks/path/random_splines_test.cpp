@@ -69,8 +69,13 @@ struct Laid {
             if (path.finished() || path.first >= piece) return "";
             path.advance_to(ring, scan, piece);
             if (path.lost) return "lost";
-            const std::string what = violation(path.now(ring), limits);
+            const PathMotion m = path.now(ring);
+            const std::string what = violation(m, limits);
             if (!what.empty()) return what;
+            constexpr double ripple = 5e-4;
+            const PathVector& v = m.velocity;
+            if (std::hypot(v[0], v[1], v[2]) > (1 + ripple) * limits.path.velocity)
+                return "velocity in space";
             // Limits of an axis may be decades below those of the path.
             scan *= n % 100 == 99 ? 1.5 : 1;
         }
