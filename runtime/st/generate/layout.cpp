@@ -38,7 +38,9 @@ void note_activation(const Writing& w, Routine& routine, std::uint32_t& at) {
     if (w.checked.has_references && routine.lends) routine.activation = at++;
 }
 
+/// Where they are too large together no memory is taken for them.
 void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condition) {
+    const std::uint32_t begin = at;
     for (Variable& variable : routine.variables) {
         const bool elsewhere = variable.space == Space::constant ||
                                variable.space == Space::global || variable.space == Space::image ||
@@ -48,7 +50,10 @@ void place_variables(Writing& w, Routine& routine, std::uint32_t& at, auto condi
         variable.slot = at;
         const std::uint64_t slots = slots_in_frame(w, variable);
         check_size(w, at + slots, variable.name.place, takes(variable.text, slots > most_slots));
-        if (at + slots > most_slots) return;
+        if (at + slots > most_slots) {
+            at = begin;
+            return;
+        }
         at += static_cast<std::uint32_t>(slots);
     }
 }
