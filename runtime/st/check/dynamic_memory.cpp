@@ -250,15 +250,20 @@ bool rewrite_new(Checking& c, Statement*& s) {
         make_call(c, "__SYSTEM.ADR", element(c, like, *pool.elements, make_use(c, like, first)))));
     Expression* is_made =
         binary(c, like, Word::greater_or_equal, make_use(c, like, first), make_dint(c, like, 0));
+    const auto take = [&](Expression* made) {
+        Statement* assigned = make_assignment(c, s->place, s->target, made);
+        if (c.beginnings.contains(s)) c.beginnings.insert(assigned);
+        return assigned;
+    };
     Block otherwise, behind;
     if (is_interface(c, *s->target)) {
         Expression* instance = make(c, E::deref, like);
         instance->operands[0] = make_use(c, like, pointer);
         Expression* none = make_constant(c, like, any_integer_type, {});
-        then.push_back(make_assignment(c, s->place, s->target, instance));
-        otherwise.push_back(make_assignment(c, s->place, s->target, none));
+        then.push_back(take(instance));
+        otherwise.push_back(take(none));
     } else {
-        behind.push_back(make_assignment(c, s->place, s->target, make_use(c, like, pointer)));
+        behind.push_back(take(make_use(c, like, pointer)));
     }
     Block all{make_assignment(c, s->place, make_use(c, like, count), given),
               make_assignment(c, s->place, make_use(c, like, first),
