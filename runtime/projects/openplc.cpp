@@ -8,6 +8,7 @@
 
 #include "runtime/projects/drawings/rung_graphs.hpp"
 #include "runtime/projects/plcopen.hpp"
+#include "runtime/projects/xml.hpp"
 #include "runtime/source/codes.hpp"
 #include "runtime/source/letters.hpp"
 #include "runtime/source/paths.hpp"

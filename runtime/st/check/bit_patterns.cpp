@@ -1,6 +1,7 @@
 #include "runtime/st/check/calls.hpp"
 #include "runtime/st/check/conversions.hpp"
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/nodes.hpp"
 #include "runtime/st/types/packed.hpp"
 
 namespace lineshaft::st {

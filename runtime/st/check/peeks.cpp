@@ -5,6 +5,7 @@
 #include "runtime/st/check/image.hpp"
 #include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
+#include "runtime/st/syntax/literals.hpp"
 
 namespace lineshaft::st {
 

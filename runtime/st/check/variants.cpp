@@ -1,6 +1,7 @@
 #include "runtime/st/check/variants.hpp"
 
 #include "runtime/st/check/expressions.hpp"
+#include "runtime/st/check/names.hpp"
 #include "runtime/st/check/nodes.hpp"
 #include "runtime/st/check/statements.hpp"
 #include "runtime/st/check/types.hpp"

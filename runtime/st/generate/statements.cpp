@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "runtime/st/generate/layout.hpp"
 #include "runtime/st/generate/places.hpp"
 #include "runtime/st/generate/values.hpp"
 

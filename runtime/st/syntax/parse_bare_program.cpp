@@ -2,6 +2,7 @@
 
 #include "runtime/source/letters.hpp"
 #include "runtime/st/syntax/grammar.hpp"
+#include "runtime/st/syntax/parser.hpp"
 
 namespace lineshaft::st {
 
