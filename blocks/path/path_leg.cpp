@@ -204,8 +204,7 @@ bool plan_with(ConstPathStretches stretches, const Departure& departure, const S
 }
 
 /// To a place in the last stretch of the span, and a velocity there that is `exit` at most. Where
-/// another one than is wanted is reached it is by the direct ramp, with whatever V; where the
-/// motion ends as fast as the last box allows it is nowhere faster in it.
+/// the motion ends as fast as the last box allows it is nowhere faster in it.
 bool plan_to(ConstPathStretches stretches, const Departure& departure, const Span& span, double end,
              double exit, MotionPlan& out) {
     const auto& [from, base, factor] = departure;
@@ -224,7 +223,6 @@ bool plan_to(ConstPathStretches stretches, const Departure& departure, const Spa
         const double most = std::max(std::min(V, top), velocity);
         if (most != before && plan_with(stretches, departure, span, most, {room, velocity}, out))
             return true;
-        if (velocity != wanted) return false;
         before = most;
     }
     return false;

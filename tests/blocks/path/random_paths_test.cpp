@@ -118,6 +118,10 @@ TEST_CASE("path: a greater exit that lowers an entry leaves no ramp that ends fa
     CHECK(fault_of(200884, 500).empty());
 }
 
+TEST_CASE("path: a velocity that the direct ramp reaches is planned with each limit") {
+    CHECK(fault_of(600005775, 500).empty());
+}
+
 TEST_CASE("path: lines of any length end, or are known to be beyond planning") {
     Random random(11);
     std::array<int, 2> planned{};
