@@ -274,14 +274,15 @@ void append_piece(Path& path, std::span<PathPiece> ring, const PathCurve& curve,
 /// After the last piece has been cut: whether what is planned holds still, or can be mended.
 bool holds(Path& path, std::span<PathPiece> ring, std::uint64_t cut) {
     if (path.standing() || cut >= path.known) return true;
+    const auto can_go_on = [&] {
+        return path.leg.end_velocity() <= stretches_of(path, ring).exit(path.leg.goal);
+    };
     if (is_sure(path, path.leg) && cut > path.stretch + most_pieces_ahead) {
         look_back_from(path, ring, cut, {});
-        if (is_sure(path, path.leg)) return true;
+        if (is_sure(path, path.leg) && can_go_on()) return true;
     }
     look_back_from(path, ring, path.stretches, {});
-    if (path.leg.goal < cut &&
-        path.leg.end_velocity() <= stretches_of(path, ring).exit(path.leg.goal))
-        return true;
+    if (path.leg.goal < cut && can_go_on()) return true;
     return plan_anew(path, ring);
 }
 

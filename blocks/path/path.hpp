@@ -48,13 +48,13 @@ struct Path {
     std::uint64_t count = 0;      ///< pieces appended so far
     std::uint64_t stretch = 0;    ///< number of the stretch under way, counted from 0
     std::uint64_t stretches = 0;  ///< of the pieces appended so far
-    std::uint64_t known = 0;      ///< stretches that are planned with; the others come to count later
-    std::uint64_t sure = 0;       ///< entries of those before this one stay, whatever is appended
-    std::uint64_t changed = 0;    ///< the first stretch that has changed since the last look back
-    double total = 0;             ///< length of all pieces appended [u]
-    double time = 0;              ///< since the leg under way began [s]
-    double again = any_time;      ///< then [s] it is tried to plan anew what could not be planned
-    double override = 1;          ///< factor of the velocity, >= 0
+    std::uint64_t known = 0;    ///< stretches that are planned with; the others come to count later
+    std::uint64_t sure = 0;     ///< entries of those before this one stay, whatever is appended
+    std::uint64_t changed = 0;  ///< the first stretch that has changed since the last look back
+    double total = 0;           ///< length of all pieces appended [u]
+    double time = 0;            ///< since the leg under way began [s]
+    double again = any_time;    ///< then [s] it is tried to plan anew what could not be planned
+    double override = 1;        ///< factor of the velocity, >= 0
     PathLimit braking = no_path_limit;  ///< of a halt
     bool halted = false;
     bool stale = false;  ///< what was commanded is to be planned with the next `advance`

@@ -93,10 +93,9 @@ void check_given(Checking& c, const Argument& argument, const Variable& paramete
         Expression output = *value;
         output.kind = E::name;
         output.type = type;
-        return takes_outputs_as_assigned(value->place.dialect()) && may_become(c, output, given);
+        return takes_outputs_as_assigned(dialect) && may_become(c, output, given);
     };
-    const bool are_pointers =
-        value->place.dialect().is_loose && given.is_pointer() && type->is_pointer();
+    const bool are_pointers = dialect.is_loose && given.is_pointer() && type->is_pointer();
     const bool is_of_own = parameter.section == Section::output && type->is_alias() &&
                            type->element && same_type(given, *type->element);
     const bool fits =
